@@ -1,0 +1,297 @@
+//! The plane and the space: one sealed trait, two types.
+//!
+//! Every solver is written once against [`Dim`]. Mathematics that exists in one dimension only
+//! is a method here, so that no solver asks which dimension it runs in.
+//!
+//! Tangential motion and force at a contact are handled through their dual, the cross product
+//! with the contact normal, which is a [`Spin`]: a number in the plane, a vector in space. A
+//! tangential displacement `xi` is kept as `normal x xi`; it turns back into a vector by
+//! [`Dim::turn`]. One source then serves both dimensions.
+
+use crate::field::FieldRef;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::D2 {}
+    impl Sealed for super::D3 {}
+}
+
+/// What vectors and spins have in common: a linear space over `f64` with an inner product.
+pub trait Linear:
+    Copy
+    + Default
+    + PartialEq
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+    + crate::snapshot::Stored
+{
+    /// The zero element.
+    const ZERO: Self;
+    /// Inner product.
+    fn dot(self, other: Self) -> f64;
+    /// Square of the length.
+    #[inline(always)]
+    fn length_squared(self) -> f64 {
+        self.dot(self)
+    }
+    /// Length.
+    #[inline(always)]
+    fn length(self) -> f64 {
+        self.length_squared().sqrt()
+    }
+    /// Whether every component is finite.
+    fn is_finite(self) -> bool;
+}
+
+/// A position, velocity or force.
+pub trait Vector: Linear {
+    /// The vector with this length along axis `axis`.
+    fn along(axis: usize, length: f64) -> Self;
+    /// Component along axis `axis`.
+    fn component(self, axis: usize) -> f64;
+    /// Smaller of both, component by component.
+    fn min(self, other: Self) -> Self;
+    /// Larger of both, component by component.
+    fn max(self, other: Self) -> Self;
+    /// From one number per axis; `None` when the count is wrong.
+    fn from_slice(components: &[f64]) -> Option<Self>;
+    /// Padded with zero to three components, for output.
+    fn padded(self) -> [f64; 3];
+}
+
+/// An angular velocity or torque: a number in the plane, a vector in space.
+pub trait Spin: Linear {
+    /// The spin about the axis that leaves the plane (z).
+    fn about_z(rate: f64) -> Self;
+    /// The component about z, the only one in the plane.
+    fn z(self) -> f64;
+}
+
+/// The plane or the space. Sealed: only [`D2`] and [`D3`].
+pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
+    /// Number of axes.
+    const N: usize;
+    /// Names of the axes.
+    const AXES: &'static [&'static str];
+    /// Axis that points up by convention: y in the plane, z in space.
+    const UP: usize;
+    /// Moment of inertia of a uniform ball over `mass * radius^2`: 1/2 for a disk, 2/5 for a sphere.
+    const BALL_INERTIA: f64;
+    /// What a grain is called.
+    const BALL: &'static str;
+    /// Position, velocity, force.
+    type Vec: Vector;
+    /// Angular velocity, torque.
+    type Spin: Spin;
+
+    /// Area of a disk \[m^2\] or volume of a sphere \[m^3\].
+    fn ball_volume(radius: f64) -> f64;
+    /// Cross product of two vectors.
+    fn cross(a: Self::Vec, b: Self::Vec) -> Self::Spin;
+    /// Cross product `spin x arm`: the velocity at `arm` of a body that turns with `spin`.
+    fn turn(spin: Self::Spin, arm: Self::Vec) -> Self::Vec;
+    /// The part of `spin` at right angles to the unit vector `normal`; all of it in the plane.
+    fn tangential(spin: Self::Spin, normal: Self::Vec) -> Self::Spin;
+    /// Carries a tangential quantity of a contact along with the contact: turned by `twist`
+    /// about the (new) normal, cut to the tangent plane, its length kept. In the plane there
+    /// is one tangent only and nothing to do.
+    fn follow(spring: Self::Spin, normal: Self::Vec, twist: f64) -> Self::Spin;
+    /// Rate of turning about the normal; zero in the plane.
+    fn twist(spin: Self::Spin, normal: Self::Vec) -> f64;
+    /// Shows vectors to an output.
+    fn vector_field(values: &[Self::Vec]) -> FieldRef<'_>;
+    /// Shows spins to an output.
+    fn spin_field(values: &[Self::Spin]) -> FieldRef<'_>;
+}
+
+/// The plane; everything is per metre of depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct D2;
+
+/// The space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct D3;
+
+impl Linear for f64 {
+    const ZERO: Self = 0.0;
+    #[inline(always)]
+    fn dot(self, other: Self) -> f64 {
+        self * other
+    }
+    #[inline(always)]
+    fn length(self) -> f64 {
+        self.abs()
+    }
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+}
+
+impl Spin for f64 {
+    fn about_z(rate: f64) -> Self {
+        rate
+    }
+    #[inline(always)]
+    fn z(self) -> f64 {
+        self
+    }
+}
+
+impl Spin for DVec3 {
+    fn about_z(rate: f64) -> Self {
+        DVec3::new(0.0, 0.0, rate)
+    }
+    #[inline(always)]
+    fn z(self) -> f64 {
+        self.z
+    }
+}
+
+macro_rules! implement_vector {
+    ($vector:ty, $n:literal, |$v:ident| $padded:expr) => {
+        impl Linear for $vector {
+            const ZERO: Self = <$vector>::ZERO;
+            #[inline(always)]
+            fn dot(self, other: Self) -> f64 {
+                <$vector>::dot(self, other)
+            }
+            fn is_finite(self) -> bool {
+                <$vector>::is_finite(self)
+            }
+        }
+
+        impl Vector for $vector {
+            fn along(axis: usize, length: f64) -> Self {
+                let mut vector = Self::ZERO;
+                vector[axis] = length;
+                vector
+            }
+            #[inline(always)]
+            fn component(self, axis: usize) -> f64 {
+                self[axis]
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                <$vector>::min(self, other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                <$vector>::max(self, other)
+            }
+            fn from_slice(components: &[f64]) -> Option<Self> {
+                (components.len() == $n).then(|| <$vector>::from_slice(components))
+            }
+            fn padded(self) -> [f64; 3] {
+                let $v = self;
+                $padded
+            }
+        }
+    };
+}
+
+implement_vector!(DVec2, 2, |v| [v.x, v.y, 0.0]);
+implement_vector!(DVec3, 3, |v| [v.x, v.y, v.z]);
+
+impl Dim for D2 {
+    const N: usize = 2;
+    const AXES: &'static [&'static str] = &["x", "y"];
+    const UP: usize = 1;
+    const BALL_INERTIA: f64 = 0.5;
+    const BALL: &'static str = "disk";
+    type Vec = DVec2;
+    type Spin = f64;
+
+    #[inline(always)]
+    fn ball_volume(radius: f64) -> f64 {
+        PI * radius * radius
+    }
+    #[inline(always)]
+    fn cross(a: DVec2, b: DVec2) -> f64 {
+        a.x * b.y - a.y * b.x
+    }
+    #[inline(always)]
+    fn turn(spin: f64, arm: DVec2) -> DVec2 {
+        DVec2::new(-spin * arm.y, spin * arm.x)
+    }
+    #[inline(always)]
+    fn tangential(spin: f64, _normal: DVec2) -> f64 {
+        spin
+    }
+    #[inline(always)]
+    fn follow(spring: f64, _normal: DVec2, _twist: f64) -> f64 {
+        spring
+    }
+    #[inline(always)]
+    fn twist(_spin: f64, _normal: DVec2) -> f64 {
+        0.0
+    }
+    fn vector_field(values: &[DVec2]) -> FieldRef<'_> {
+        FieldRef::Vector2(values)
+    }
+    fn spin_field(values: &[f64]) -> FieldRef<'_> {
+        FieldRef::Scalar(values)
+    }
+}
+
+impl Dim for D3 {
+    const N: usize = 3;
+    const AXES: &'static [&'static str] = &["x", "y", "z"];
+    const UP: usize = 2;
+    const BALL_INERTIA: f64 = 0.4;
+    const BALL: &'static str = "sphere";
+    type Vec = DVec3;
+    type Spin = DVec3;
+
+    #[inline(always)]
+    fn ball_volume(radius: f64) -> f64 {
+        4.0 / 3.0 * PI * radius * radius * radius
+    }
+    #[inline(always)]
+    fn cross(a: DVec3, b: DVec3) -> DVec3 {
+        a.cross(b)
+    }
+    #[inline(always)]
+    fn turn(spin: DVec3, arm: DVec3) -> DVec3 {
+        spin.cross(arm)
+    }
+    #[inline(always)]
+    fn tangential(spin: DVec3, normal: DVec3) -> DVec3 {
+        spin - normal * spin.dot(normal)
+    }
+    #[inline(always)]
+    fn follow(spring: DVec3, normal: DVec3, twist: f64) -> DVec3 {
+        let length = spring.length();
+        if length == 0.0 {
+            return DVec3::ZERO;
+        }
+        let turned = spring + normal.cross(spring) * twist;
+        let flat = turned - normal * turned.dot(normal);
+        let flat_length = flat.length();
+        if flat_length > 0.0 { flat * (length / flat_length) } else { DVec3::ZERO }
+    }
+    #[inline(always)]
+    fn twist(spin: DVec3, normal: DVec3) -> f64 {
+        spin.dot(normal)
+    }
+    fn vector_field(values: &[DVec3]) -> FieldRef<'_> {
+        FieldRef::Vector3(values)
+    }
+    fn spin_field(values: &[DVec3]) -> FieldRef<'_> {
+        FieldRef::Vector3(values)
+    }
+}
+
+#[cfg(test)]
+mod tests;

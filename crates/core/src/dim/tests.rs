@@ -1,0 +1,38 @@
+use super::*;
+use proptest::prelude::*;
+
+fn close(a: DVec3, b: DVec3) -> bool {
+    (a - b).length() <= 1e-12 * (1.0 + a.length() + b.length())
+}
+
+proptest! {
+    #[test]
+    fn the_plane_is_a_slice_of_space(a in [-1.0..1.0, -1.0..1.0f64], b in [-1.0..1.0, -1.0..1.0f64], w in -1.0..1.0f64) {
+        let (a2, b2) = (DVec2::from(a), DVec2::from(b));
+        let (a3, b3) = (a2.extend(0.0), b2.extend(0.0));
+        prop_assert_eq!(D2::cross(a2, b2), D3::cross(a3, b3).z);
+        prop_assert!(close(D2::turn(w, a2).extend(0.0), D3::turn(DVec3::about_z(w), a3)));
+    }
+
+    #[test]
+    fn a_tangential_vector_survives_its_dual(v in [-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n in [0.1..1.0, -1.0..1.0, -1.0..1.0f64]) {
+        let normal = DVec3::from(n).normalize();
+        let vector = DVec3::from(v);
+        let tangential = vector - normal * vector.dot(normal);
+        prop_assert!(close(D3::turn(D3::cross(normal, vector), normal), tangential));
+    }
+
+    #[test]
+    fn following_a_contact_keeps_the_length(s in [-1.0..1.0, 0.2..1.0, -1.0..1.0f64], twist in -0.1..0.1f64) {
+        let followed = D3::follow(DVec3::from(s), DVec3::Z, twist);
+        prop_assert!((followed.length() - DVec3::from(s).length()).abs() < 1e-14);
+        prop_assert!(followed.z.abs() < 1e-15);
+    }
+}
+
+#[test]
+fn components_are_counted() {
+    assert_eq!(DVec2::from_slice(&[1.0, 2.0]), DVec2::new(1.0, 2.0));
+    assert!(<DVec2 as Vector>::from_slice(&[1.0]).is_none());
+    assert!(<DVec3 as Vector>::from_slice(&[1.0, 2.0]).is_none());
+}

@@ -1,0 +1,223 @@
+//! A solver with a clock, and the loop that runs it between outputs.
+
+use crate::observer::{Flow, ObserverError, Scheduled};
+use crate::snapshot::{Section, SnapshotError};
+use crate::solver::{Solver, StepError, check_step};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Simulated time. Inside a segment it is `start + k * dt`, not a running sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    start: f64,
+    dt: f64,
+    steps_in_segment: u64,
+    step: u64,
+}
+
+impl Clock {
+    /// Simulated time \[s\].
+    pub fn time(&self) -> f64 {
+        self.start + self.steps_in_segment as f64 * self.dt
+    }
+
+    /// Step of the present segment \[s\]; zero before the first.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Steps taken since the start of the run.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Time since the start of the present segment \[s\].
+    pub fn time_in_segment(&self) -> f64 {
+        self.steps_in_segment as f64 * self.dt
+    }
+}
+
+/// How a segment ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Its duration is over.
+    Finished,
+    /// An observer asked to stop.
+    Stopped,
+    /// The interrupt flag was raised.
+    Interrupted,
+}
+
+/// Why a segment failed.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The solver could not go on.
+    Step(StepError),
+    /// An observer failed.
+    Observer(ObserverError),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(error) => error.fmt(f),
+            Self::Observer(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+impl From<StepError> for RunError {
+    fn from(error: StepError) -> Self {
+        Self::Step(error)
+    }
+}
+
+impl From<ObserverError> for RunError {
+    fn from(error: ObserverError) -> Self {
+        Self::Observer(error)
+    }
+}
+
+/// A solver with its clock.
+pub struct Simulation {
+    solver: Box<dyn Solver>,
+    clock: Clock,
+}
+
+impl fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Simulation").field("solver", &self.solver.name()).field("clock", &self.clock).finish()
+    }
+}
+
+/// Wall time between looks at the interrupt flag and at wall-clock schedules.
+const ATTENTION: Duration = Duration::from_millis(50);
+
+impl Simulation {
+    /// A simulation at time zero.
+    pub fn new(solver: Box<dyn Solver>) -> Self {
+        Self { solver, clock: Clock { start: 0.0, dt: 0.0, steps_in_segment: 0, step: 0 } }
+    }
+
+    /// The clock.
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// The solver.
+    pub fn solver(&self) -> &dyn Solver {
+        self.solver.as_ref()
+    }
+
+    /// The solver, to change it between segments.
+    pub fn solver_mut(&mut self) -> &mut dyn Solver {
+        self.solver.as_mut()
+    }
+
+    /// Starts a segment with its own step \[s\]; time goes on from where it is.
+    ///
+    /// # Errors
+    /// When `dt` is not a positive finite number.
+    pub fn begin_segment(&mut self, dt: f64) -> Result<(), StepError> {
+        check_step(dt)?;
+        self.clock = Clock { start: self.clock.time(), dt, steps_in_segment: 0, step: self.clock.step };
+        Ok(())
+    }
+
+    /// Runs the present segment until it has lasted `duration` \[s\] (the first step at or after
+    /// it), an observer stops it, or the interrupt flag is raised. Observers look before the
+    /// first step, and then when they are due.
+    ///
+    /// # Errors
+    /// When the solver or an observer fails.
+    pub fn run(
+        &mut self,
+        duration: f64,
+        observers: &mut [Scheduled],
+        interrupt: &AtomicBool,
+    ) -> Result<Ending, RunError> {
+        check_step(self.clock.dt)?;
+        let last = (duration / self.clock.dt * (1.0 - 1e-12)).ceil() as u64;
+        let mut burst = 1_u64;
+        loop {
+            let mut flow = Flow::Continue;
+            for observer in observers.iter_mut() {
+                if observer.tick(self)? == Flow::Stop {
+                    flow = Flow::Stop;
+                }
+            }
+            if flow == Flow::Stop {
+                return Ok(Ending::Stopped);
+            }
+            if self.clock.steps_in_segment >= last {
+                return Ok(Ending::Finished);
+            }
+            if interrupt.load(Ordering::Relaxed) {
+                return Ok(Ending::Interrupted);
+            }
+            let due = observers.iter().map(|o| o.steps_until_due(self)).min().unwrap_or(u64::MAX);
+            let steps = due.min(last - self.clock.steps_in_segment).min(burst);
+            let begun = Instant::now();
+            self.advance(steps)?;
+            burst = next_burst(burst, steps, begun.elapsed());
+        }
+    }
+
+    /// Takes `steps` steps of the present segment without observers.
+    ///
+    /// # Errors
+    /// When the solver fails.
+    pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        self.solver.advance(self.clock.dt, steps)?;
+        self.clock.steps_in_segment += steps;
+        self.clock.step += steps;
+        Ok(())
+    }
+
+    /// The sections of clock and solver: all that decides how the run goes on.
+    pub fn save(&self) -> Vec<Section> {
+        let mut clock = Section::new("clock");
+        clock.put("start and dt", &[self.clock.start, self.clock.dt]);
+        clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
+        let mut solver = Section::new("solver");
+        self.solver.save(&mut solver);
+        vec![clock, solver]
+    }
+
+    /// Restores clock and solver.
+    ///
+    /// # Errors
+    /// When a section is missing or does not fit.
+    pub fn restore(&mut self, sections: &[Section]) -> Result<(), SnapshotError> {
+        let clock = find_section(sections, "clock")?;
+        let times: Vec<f64> = clock.array_of("start and dt", 2)?;
+        let steps: Vec<u64> = clock.array_of("steps in segment and run", 2)?;
+        self.solver.restore(find_section(sections, "solver")?)?;
+        self.clock = Clock { start: times[0], dt: times[1], steps_in_segment: steps[0], step: steps[1] };
+        Ok(())
+    }
+}
+
+/// The section of this name.
+///
+/// # Errors
+/// When there is none.
+pub fn find_section<'a>(sections: &'a [Section], name: &str) -> Result<&'a Section, SnapshotError> {
+    let found = sections.iter().find(|section| section.name() == name);
+    found.ok_or_else(|| SnapshotError::Missing { place: name.to_owned() })
+}
+
+/// Lets bursts of steps grow while they are short against [`ATTENTION`].
+fn next_burst(burst: u64, taken: u64, wall: Duration) -> u64 {
+    if wall > ATTENTION {
+        (burst / 2).max(1)
+    } else if taken == burst && wall < ATTENTION / 2 {
+        burst.saturating_mul(2)
+    } else {
+        burst
+    }
+}
