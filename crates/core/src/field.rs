@@ -60,35 +60,48 @@ pub trait FieldSink {
     /// Whether this field, link field or number should be shown.
     fn wants(&self, name: &str) -> bool;
     /// One value per point or cell.
-    fn field(&mut self, name: &'static str, unit: &'static str, values: FieldRef<'_>);
+    fn field(&mut self, name: &str, unit: &str, values: FieldRef<'_>);
     /// One number.
-    fn number(&mut self, name: &'static str, unit: &'static str, value: f64);
+    fn number(&mut self, name: &str, unit: &str, value: f64);
     /// The pairs of points that the following link fields belong to (contacts).
     fn links(&mut self, pairs: &[[u32; 2]]) {
         let _ = pairs;
     }
     /// One value per link, after [`FieldSink::links`].
-    fn link_field(&mut self, name: &'static str, unit: &'static str, values: FieldRef<'_>) {
+    fn link_field(&mut self, name: &str, unit: &str, values: FieldRef<'_>) {
         let _ = (name, unit, values);
     }
 }
 
 /// What a solver can show, for help texts and error messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// Name that a sink asks for.
-    pub name: &'static str,
+    pub name: String,
     /// Unit of the values.
     pub unit: &'static str,
     /// What it is, in one line.
     pub meaning: &'static str,
+    /// One number, one value per item, or one per link.
+    pub kind: ShownAs,
+}
+
+/// The shape of what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownAs {
+    /// One number.
+    Number,
+    /// One value per grain, particle or cell.
+    Field,
+    /// One value per contact.
+    Link,
 }
 
 /// A sink that keeps the numbers it asked for; fields are ignored.
 #[derive(Clone, Debug, Default)]
 pub struct Numbers {
     wanted: Vec<String>,
-    values: Vec<(&'static str, &'static str, f64)>,
+    values: Vec<(String, String, f64)>,
 }
 
 impl Numbers {
@@ -99,11 +112,11 @@ impl Numbers {
 
     /// The number shown under this name.
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.values.iter().find(|(n, ..)| *n == name).map(|&(.., value)| value)
+        self.values.iter().find(|(n, ..)| n == name).map(|(.., value)| *value)
     }
 
     /// Name, unit and value of all numbers, in the order shown.
-    pub fn values(&self) -> &[(&'static str, &'static str, f64)] {
+    pub fn values(&self) -> &[(String, String, f64)] {
         &self.values
     }
 }
@@ -112,10 +125,10 @@ impl FieldSink for Numbers {
     fn wants(&self, name: &str) -> bool {
         self.wanted.iter().any(|wanted| wanted == name)
     }
-    fn field(&mut self, _: &'static str, _: &'static str, _: FieldRef<'_>) {}
-    fn number(&mut self, name: &'static str, unit: &'static str, value: f64) {
+    fn field(&mut self, _: &str, _: &str, _: FieldRef<'_>) {}
+    fn number(&mut self, name: &str, unit: &str, value: f64) {
         if self.wants(name) {
-            self.values.push((name, unit, value));
+            self.values.push((name.to_owned(), unit.to_owned(), value));
         }
     }
 }

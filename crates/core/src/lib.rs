@@ -34,7 +34,7 @@ pub mod units;
 
 pub use blocks::{Blocks, PerBlock};
 pub use dim::{D2, D3, Dim, Linear, Spin, Vector};
-pub use field::{FieldRef, FieldSink, Location, Numbers, Shown};
+pub use field::{FieldRef, FieldSink, Location, Numbers, Shown, ShownAs};
 pub use glam;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
 pub use simulation::{Clock, Ending, RunError, Simulation};

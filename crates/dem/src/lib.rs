@@ -1,1 +1,60 @@
-//! In the making.
+//! Discrete element method for disks ([`Dem2`]) and spheres ([`Dem3`]), from one source.
+//!
+//! Solves Newton's equations of translation and rotation \[Kumar2014, eq. 3.28-3.31\]
+//!
+//! ```text
+//! m x'' = sum F + m g        I w' = sum l x F
+//! ```
+//!
+//! with linear spring-dashpot contacts, Coulomb friction with a tangential spring, and optional
+//! rolling resistance. The scheme is of second order in time with damping, and contact entry
+//! and exit included (see [`law::Meeting`]).
+//!
+//! ```
+//! use granular_dem::{Dem2, Grain, Material, Materials, Options, Setup, Wall};
+//! use granular_core::{Solver, glam::DVec2};
+//!
+//! let mut materials = Materials::new();
+//! let glass = materials.add(Material { restitution: 0.5, ..Material::default() })?;
+//! let floor = Wall::plane("floor", DVec2::ZERO, DVec2::Y, glass)?;
+//! let grain = Grain::at(DVec2::new(0.0, 0.101), 1e-3, glass); // 0.1 m above the floor
+//! let mut dem = Dem2::new(Setup {
+//!     materials,
+//!     grains: vec![grain],
+//!     walls: vec![floor],
+//!     gravity: DVec2::new(0.0, -9.81),
+//!     options: Options::default(),
+//! })?;
+//! let dt = dem.recommended_step();
+//! let fall = (2.0_f64 * 0.1 / 9.81).sqrt();
+//! dem.advance(dt, (1.25 * fall / dt) as u64)?; // fall, bounce, and half of the way up
+//! assert!((dem.grain(0).velocity.y - (0.5 - 0.25) * 9.81 * fall).abs() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod contacts;
+mod dem;
+mod grains;
+pub mod law;
+mod ledger;
+mod limits;
+mod lists;
+pub mod material;
+mod motion;
+mod show;
+pub mod wall;
+
+pub use contacts::{Contact, Partner};
+pub use dem::{Dem, LeverArm, Options, Setup};
+pub use grains::Grain;
+pub use law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
+pub use ledger::{Losses, Tally};
+pub use limits::stability_step;
+pub use material::{Material, MaterialId, Materials, PairProperties, SetupError, Tension};
+pub use show::Energies;
+pub use wall::{Shape, Wall};
+
+/// Disks in the plane, per metre of depth.
+pub type Dem2 = Dem<granular_core::D2>;
+/// Spheres in space.
+pub type Dem3 = Dem<granular_core::D3>;

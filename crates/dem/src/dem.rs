@@ -1,0 +1,495 @@
+//! The solver: set-up, the step, and changes between stages.
+
+use crate::contacts::{Contacts, Pairs, Trouble, View};
+use crate::grains::{Grain, Grains};
+use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
+use crate::ledger::Losses;
+use crate::material::{MaterialId, Materials, SetupError, Tension};
+use crate::wall::Wall;
+use crate::{lists, motion};
+use granular_core::solver::check_step;
+use granular_core::{
+    Blocks, Dim, FieldSink, Limits, Linear, Location, Memory, Section, Shown, SnapshotError, Solver,
+    StepError,
+};
+
+/// Where a contact force acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LeverArm {
+    /// At the middle of the overlap: angular momentum is kept to round-off.
+    #[default]
+    Exact,
+    /// At the radius, as in the thesis \[Kumar2014, eq. 3.43\]: angular momentum is off by the
+    /// overlap over the radius.
+    Radius,
+}
+
+/// Choices of the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Whether parting contacts may pull.
+    pub tension: Tension,
+    /// Where a contact force acts.
+    pub lever_arm: LeverArm,
+    /// Whether losses of energy are integrated. Costs a few per cent; off unless asked for.
+    pub ledger: bool,
+    /// Steps in the shortest contact time, for the recommended step.
+    pub steps_per_contact: f64,
+    /// Reach of the neighbour lists over the mean diameter.
+    pub skin: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tension: Tension::Cut,
+            lever_arm: LeverArm::Exact,
+            ledger: false,
+            steps_per_contact: 25.0,
+            skin: 0.25,
+        }
+    }
+}
+
+/// All that makes a simulation.
+#[derive(Clone, Debug)]
+pub struct Setup<D: Dim> {
+    /// Materials of grains and walls.
+    pub materials: Materials,
+    /// Grains; their index is their stable identifier.
+    pub grains: Vec<Grain<D>>,
+    /// Walls.
+    pub walls: Vec<Wall<D>>,
+    /// Gravity \[m/s^2\].
+    pub gravity: D::Vec,
+    /// Choices of the method.
+    pub options: Options,
+}
+
+/// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
+/// sorts at the same places.
+const SORT_EVERY: u64 = 5000;
+/// Below this number sorting does not pay.
+const SORT_FROM: usize = 512;
+/// Blocks that a sample is cut into, and their smallest size.
+const BLOCKS: usize = 16;
+const SMALLEST_BLOCK: usize = 128;
+
+/// Discrete element method in dimension `D`.
+pub struct Dem<D: Dim> {
+    pub(crate) materials: Materials,
+    pub(crate) walls: Vec<Wall<D>>,
+    pub(crate) gravity: D::Vec,
+    pub(crate) options: Options,
+    pub(crate) grains: Grains<D>,
+    pub(crate) pairs: Box<dyn Pairs<D>>,
+    pub(crate) blocks: Blocks,
+    pub(crate) losses: Losses,
+    /// Energy put in by changes between steps, such as a new gravity \[J\].
+    pub(crate) injected: f64,
+    pub(crate) initial_energy: Option<f64>,
+    pub(crate) steps: u64,
+    custom_law: bool,
+    skin: f64,
+    /// Reach of the present lists \[m\].
+    reach: f64,
+    /// Bound on how far any grain moved since the lists were built \[m\].
+    travel: f64,
+    speeds: Vec<u64>,
+}
+
+impl<D: Dim> Dem<D> {
+    /// A simulation with the linear law that the materials need: without friction no grain
+    /// turns and no contact remembers anything, and neither takes memory.
+    ///
+    /// # Errors
+    /// When a value is out of range.
+    pub fn new(setup: Setup<D>) -> Result<Self, SetupError> {
+        Self::build(setup, |materials, options, blocks| choose_law::<D>(materials, options, blocks), false)
+    }
+
+    /// A simulation with a contact law of the caller's own.
+    ///
+    /// # Errors
+    /// When a value is out of range.
+    pub fn with_law<L: ContactLaw<D>>(setup: Setup<D>) -> Result<Self, SetupError> {
+        let law = |materials: &Materials, options: &Options, blocks| -> Box<dyn Pairs<D>> {
+            Box::new(Contacts::<D, L>::new(materials, options.tension, blocks))
+        };
+        Self::build(setup, law, true)
+    }
+
+    fn build(
+        setup: Setup<D>,
+        law: impl Fn(&Materials, &Options, Blocks) -> Box<dyn Pairs<D>>,
+        custom_law: bool,
+    ) -> Result<Self, SetupError> {
+        let Setup { materials, grains: list, walls, gravity, options } = setup;
+        check_options(&options, gravity.is_finite())?;
+        let mut grains = Grains::new(&list, &materials, gravity)?;
+        let blocks = Blocks::about(list.len(), BLOCKS, SMALLEST_BLOCK);
+        let pairs = law(&materials, &options, blocks);
+        if pairs.tangential() {
+            grains.rotate(list.iter().map(|grain| grain.spin));
+        } else if let Some(grain) = list.iter().find(|grain| grain.spin != D::Spin::ZERO) {
+            let spin = grain.spin.length();
+            return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
+        }
+        let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
+        let mut dem = Self {
+            skin: options.skin * 2.0 * mean,
+            reach: 0.0,
+            speeds: vec![0; blocks.count()],
+            materials,
+            walls,
+            gravity,
+            options,
+            grains,
+            pairs,
+            blocks,
+            losses: Losses::default(),
+            injected: 0.0,
+            initial_energy: None,
+            steps: 0,
+            custom_law,
+            travel: 0.0,
+        };
+        dem.list(0.0, None);
+        dem.initial_energy = dem.options.ledger.then(|| dem.energies().mechanical());
+        Ok(dem)
+    }
+
+    /// Number of grains.
+    pub fn len(&self) -> usize {
+        self.grains.len()
+    }
+
+    /// Whether there are no grains.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Whether grains turn; if not, there are no arrays of spins.
+    pub fn turns(&self) -> bool {
+        !self.grains.spin.is_empty()
+    }
+
+    /// The grain of a stable identifier, as it is now. Searches: for a few grains.
+    ///
+    /// # Panics
+    /// When there is no such grain.
+    pub fn grain(&self, id: u32) -> Grain<D> {
+        let index = self.grains.id.iter().position(|&other| other == id);
+        self.grain_at(index.expect("the identifier is that of a grain"))
+    }
+
+    /// All grains with their identifiers, in the order of memory.
+    pub fn grains(&self) -> impl Iterator<Item = (u32, Grain<D>)> + '_ {
+        (0..self.len()).map(|index| (self.grains.id[index], self.grain_at(index)))
+    }
+
+    fn grain_at(&self, index: usize) -> Grain<D> {
+        Grain {
+            position: self.grains.position[index],
+            velocity: self.grains.velocity[index],
+            spin: self.grains.spin.get(index).copied().unwrap_or(D::Spin::ZERO),
+            radius: self.grains.radius[index],
+            material: MaterialId(self.grains.material_of(index) as u8),
+        }
+    }
+
+    /// Walls, open gates included.
+    pub fn walls(&self) -> &[Wall<D>] {
+        &self.walls
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &Materials {
+        &self.materials
+    }
+
+    /// Gravity \[m/s^2\].
+    pub fn gravity(&self) -> D::Vec {
+        self.gravity
+    }
+
+    /// Losses of energy since the start; zero unless the ledger is kept.
+    pub fn losses(&self) -> Losses {
+        self.losses
+    }
+
+    /// Opens or closes the wall of this name. Returns whether there is one.
+    pub fn set_open(&mut self, name: &str, open: bool) -> bool {
+        let found = self.walls.iter().position(|wall| wall.name == name);
+        self.change(|dem| {
+            if let Some(index) = found {
+                dem.walls[index].open = open;
+            }
+        });
+        found.is_some()
+    }
+
+    /// Changes gravity \[m/s^2\].
+    pub fn set_gravity(&mut self, gravity: D::Vec) {
+        self.change(|dem| dem.gravity = gravity);
+    }
+
+    /// Changes the friction of one material. When friction comes into a scene that had none,
+    /// grains begin to turn and contacts to remember.
+    pub fn set_friction(&mut self, material: MaterialId, friction: f64) {
+        self.change(|dem| {
+            dem.materials.set_friction(material, friction);
+            dem.take_materials();
+        });
+    }
+
+    /// Sets all velocities and spins to zero.
+    pub fn stop_motion(&mut self) {
+        self.change(|dem| {
+            dem.grains.velocity.fill(D::Vec::ZERO);
+            dem.grains.spin.fill(D::Spin::ZERO);
+        });
+    }
+
+    /// Changes something between steps, and books the energy that this puts in.
+    fn change(&mut self, change: impl FnOnce(&mut Self)) {
+        let before = self.options.ledger.then(|| self.energies().mechanical());
+        change(self);
+        self.list(0.0, None);
+        if let Some(before) = before {
+            self.injected += self.energies().mechanical() - before;
+        }
+    }
+
+    fn take_materials(&mut self) {
+        if self.custom_law || self.pairs.tangential() || !needs_rotation(&self.materials) {
+            self.pairs.update(&self.materials, self.options.tension);
+        } else {
+            self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks);
+            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
+        }
+    }
+
+    /// What kernels see of the state between steps.
+    pub(crate) fn view(&self) -> View<'_, D> {
+        view_of(&self.grains, &self.walls, &self.options)
+    }
+
+    /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
+    /// the skin (a shot) widens the reach so that the list serves for another step.
+    fn list(&mut self, stride: f64, order: Option<&[u32]>) {
+        self.reach = self.skin.max(4.0 * stride);
+        self.travel = 0.0;
+        self.pairs.list(&view_of(&self.grains, &self.walls, &self.options), self.reach, order);
+    }
+
+    /// Sorts grains in memory when the count of steps says so.
+    fn sort_if_due(&mut self) {
+        if self.sorts_after(0) {
+            let (_, largest) = self.grains.radius_range();
+            let order = self.grains.sort(2.0 * largest);
+            self.list(0.0, Some(&order));
+        }
+    }
+
+    /// Whether grains will be sorted when so many more steps are taken.
+    fn sorts_after(&self, steps: u64) -> bool {
+        (self.steps + steps).is_multiple_of(SORT_EVERY) && self.len() >= SORT_FROM
+    }
+
+    /// One step between its two halves: lists, loads, kick.
+    fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
+        let stride = motion::fastest(&self.speeds) * dt;
+        if !stride.is_finite() {
+            return Err(self.not_finite());
+        }
+        self.travel += stride;
+        if 2.0 * self.travel + stride > self.reach {
+            self.list(stride, None);
+        }
+        self.push(dt, stride);
+        let (pairs, gravity) = (self.pairs.as_ref(), self.gravity);
+        motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
+        self.steps += 1;
+        let (losses, trouble) = self.pairs.outcome();
+        self.losses += losses;
+        trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
+    }
+
+    /// Writes the loads of all contacts where the accelerations will be.
+    fn push(&mut self, dt: f64, margin: f64) {
+        let mut force = std::mem::take(&mut self.grains.acceleration);
+        let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
+        let view = View {
+            velocity: &self.grains.middle_velocity,
+            spin: &self.grains.middle_spin,
+            dt,
+            margin,
+            ..view_of(&self.grains, &self.walls, &self.options)
+        };
+        self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
+        (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
+    }
+
+    fn not_finite(&self) -> StepError {
+        let grains = &self.grains;
+        let at =
+            lists::all_finite::<D>(&grains.position).or_else(|| lists::all_finite::<D>(&grains.velocity));
+        let id = at.map_or(0, |index| u64::from(grains.id[index]));
+        StepError::NotFinite { solver: "dem", quantity: "motion", id, step: self.steps }
+    }
+
+    fn too_deep(&self, trouble: Trouble) -> StepError {
+        let id = self.grains.id[trouble.first as usize];
+        StepError::TooStiff {
+            what: format!("overlap over radius at grain {id} in step {}", self.steps),
+            value: trouble.overlap / trouble.radius,
+            allowed: crate::contacts::DEEPEST,
+            hint: "raise the normal stiffness or lower the speed of the grains".to_owned(),
+        }
+    }
+}
+
+fn view_of<'a, D: Dim>(grains: &'a Grains<D>, walls: &'a [Wall<D>], options: &Options) -> View<'a, D> {
+    View {
+        position: &grains.position,
+        velocity: &grains.velocity,
+        spin: &grains.spin,
+        radius: &grains.radius,
+        mass: &grains.mass,
+        material: &grains.material,
+        first_material: grains.first_material,
+        walls,
+        dt: 0.0,
+        margin: 0.0,
+        arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
+    }
+}
+
+fn needs_rotation(materials: &Materials) -> bool {
+    materials.pairs().any(|(.., pair)| pair.friction > 0.0 || pair.rolling_friction > 0.0)
+}
+
+fn choose_law<D: Dim>(materials: &Materials, options: &Options, blocks: Blocks) -> Box<dyn Pairs<D>> {
+    let tension = options.tension;
+    if materials.pairs().any(|(.., pair)| pair.rolling_friction > 0.0) {
+        Box::new(Contacts::<D, LinearRolling>::new(materials, tension, blocks))
+    } else if needs_rotation(materials) {
+        Box::new(Contacts::<D, LinearFrictional>::new(materials, tension, blocks))
+    } else {
+        Box::new(Contacts::<D, LinearNormal>::new(materials, tension, blocks))
+    }
+}
+
+fn check_options(options: &Options, gravity_is_finite: bool) -> Result<(), SetupError> {
+    let fits = |value: f64| value.is_finite() && value > 0.0;
+    if !fits(options.steps_per_contact) || options.steps_per_contact < 1.0 {
+        return Err(SetupError::new("steps per contact", options.steps_per_contact, "at least 1"));
+    }
+    if !fits(options.skin) {
+        return Err(SetupError::new("skin", options.skin, "positive and finite"));
+    }
+    if !gravity_is_finite {
+        return Err(SetupError::new("gravity", f64::NAN, "finite"));
+    }
+    Ok(())
+}
+
+impl<D: Dim> Solver for Dem<D> {
+    fn name(&self) -> &'static str {
+        "dem"
+    }
+
+    fn size(&self) -> (usize, &'static str) {
+        (self.len(), "grain")
+    }
+
+    fn limits(&self, report: &mut Limits) {
+        self.report_limits(report);
+    }
+
+    fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        check_step(dt)?;
+        // Between two steps of one call, the end of one and the start of the next share a pass.
+        let mut opened = false;
+        for remaining in (0..steps).rev() {
+            if !opened {
+                self.sort_if_due();
+                motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
+            }
+            opened = remaining > 0 && !self.sorts_after(1);
+            self.load_and_kick(dt, opened)?;
+        }
+        Ok(())
+    }
+
+    fn location(&self) -> Location<'_> {
+        Location::Points(D::vector_field(&self.grains.position))
+    }
+
+    fn shown(&self) -> Vec<Shown> {
+        self.catalogue()
+    }
+
+    fn show(&self, sink: &mut dyn FieldSink) {
+        self.show_all(sink);
+    }
+
+    fn save(&self, to: &mut Section) {
+        self.save_state(to);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        self.restore_state(from)
+    }
+
+    fn memory(&self) -> Memory {
+        self.report_memory()
+    }
+}
+
+impl<D: Dim> Dem<D> {
+    fn save_state(&self, to: &mut Section) {
+        self.grains.save(to);
+        self.pairs.save(&self.grains, to);
+        to.put_one("steps", self.steps);
+        to.put("gravity", &[self.gravity]);
+        to.put("losses", &self.losses.to_array());
+        to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
+        let open: Vec<u8> = self.walls.iter().map(|wall| u8::from(wall.open)).collect();
+        to.put("open walls", &open);
+        let friction: Vec<f64> =
+            (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
+        to.put("friction", &friction);
+    }
+
+    fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let friction: Vec<f64> = from.array_of("friction", self.materials.len())?;
+        for (k, &value) in friction.iter().enumerate() {
+            self.materials.set_friction(MaterialId(k as u8), value);
+        }
+        self.take_materials();
+        self.grains.restore(from)?;
+        self.pairs.restore(from, &self.grains)?;
+        self.steps = from.one("steps")?;
+        self.gravity = from.array_of("gravity", 1)?[0];
+        let losses: Vec<f64> = from.array_of("losses", 5)?;
+        self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
+        let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;
+        self.injected = energy[0];
+        self.initial_energy = self.options.ledger.then_some(energy[1]);
+        let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
+        self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
+        if lists::all_finite::<D>(&self.grains.position).is_some() {
+            let found = "a position that is not finite".to_owned();
+            return Err(SnapshotError::Damaged { place: "solver/position".to_owned(), found });
+        }
+        self.list(0.0, None);
+        Ok(())
+    }
+}

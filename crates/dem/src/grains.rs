@@ -1,0 +1,173 @@
+//! The grains: one array per property, those that the scene does not need left empty.
+
+use crate::material::{MaterialId, Materials, SetupError};
+use granular_core::search::curve_order;
+use granular_core::{Dim, Linear, Section, SnapshotError};
+
+/// One grain, as it is put into a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain<D: Dim> {
+    /// Centre \[m\].
+    pub position: D::Vec,
+    /// Velocity \[m/s\].
+    pub velocity: D::Vec,
+    /// Angular velocity \[rad/s\].
+    pub spin: D::Spin,
+    /// Radius \[m\].
+    pub radius: f64,
+    /// Material.
+    pub material: MaterialId,
+}
+
+impl<D: Dim> Grain<D> {
+    /// A grain at rest.
+    pub fn at(position: D::Vec, radius: f64, material: MaterialId) -> Self {
+        Self { position, velocity: D::Vec::ZERO, spin: D::Spin::ZERO, radius, material }
+    }
+
+    /// The same grain with a velocity \[m/s\].
+    pub fn moving(self, velocity: D::Vec) -> Self {
+        Self { velocity, ..self }
+    }
+
+    /// The same grain with an angular velocity \[rad/s\].
+    pub fn turning(self, spin: D::Spin) -> Self {
+        Self { spin, ..self }
+    }
+}
+
+/// State and scratch of all grains. Grains are re-sorted in memory; `id` is stable.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Grains<D: Dim> {
+    pub(crate) position: Vec<D::Vec>,
+    pub(crate) velocity: Vec<D::Vec>,
+    /// Acceleration of the last step; holds the contact force while a step is under way.
+    pub(crate) acceleration: Vec<D::Vec>,
+    pub(crate) radius: Vec<f64>,
+    pub(crate) mass: Vec<f64>,
+    pub(crate) id: Vec<u32>,
+    /// Empty when all grains are of one material.
+    pub(crate) material: Vec<u8>,
+    pub(crate) first_material: u8,
+    /// Empty when nothing makes grains turn; so are the two arrays of spins below.
+    pub(crate) spin: Vec<D::Spin>,
+    pub(crate) spin_acceleration: Vec<D::Spin>,
+    /// Scratch: velocity and spin at the middle of the step.
+    pub(crate) middle_velocity: Vec<D::Vec>,
+    pub(crate) middle_spin: Vec<D::Spin>,
+}
+
+impl<D: Dim> Grains<D> {
+    pub(crate) fn new(list: &[Grain<D>], materials: &Materials, gravity: D::Vec) -> Result<Self, SetupError> {
+        if u32::try_from(list.len()).is_err() {
+            return Err(SetupError::new("number of grains", list.len() as f64, "below 2^32"));
+        }
+        for grain in list {
+            check(grain, materials)?;
+        }
+        let first_material = list.first().map_or(0, |grain| grain.material.0);
+        let uniform = list.iter().all(|grain| grain.material.0 == first_material);
+        let mass = |grain: &Grain<D>| materials.get(grain.material).density * D::ball_volume(grain.radius);
+        Ok(Self {
+            position: list.iter().map(|grain| grain.position).collect(),
+            velocity: list.iter().map(|grain| grain.velocity).collect(),
+            acceleration: vec![gravity; list.len()],
+            radius: list.iter().map(|grain| grain.radius).collect(),
+            mass: list.iter().map(mass).collect(),
+            id: (0..list.len() as u32).collect(),
+            material: if uniform { Vec::new() } else { list.iter().map(|grain| grain.material.0).collect() },
+            first_material,
+            middle_velocity: vec![D::Vec::ZERO; list.len()],
+            ..Self::default()
+        })
+    }
+
+    /// Makes room for rotation, with these spins.
+    pub(crate) fn rotate(&mut self, spins: impl Iterator<Item = D::Spin>) {
+        self.spin = spins.collect();
+        self.spin_acceleration = vec![D::Spin::ZERO; self.spin.len()];
+        self.middle_spin = vec![D::Spin::ZERO; self.spin.len()];
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    pub(crate) fn material_of(&self, index: usize) -> usize {
+        self.material.get(index).copied().unwrap_or(self.first_material) as usize
+    }
+
+    /// Smallest and largest radius \[m\].
+    pub(crate) fn radius_range(&self) -> (f64, f64) {
+        self.radius.iter().fold((f64::INFINITY, 0.0), |(low, high), &r| (r.min(low), r.max(high)))
+    }
+
+    /// Sorts all arrays along a space-filling curve. Returns the old index of each new place.
+    pub(crate) fn sort(&mut self, cell: f64) -> Vec<u32> {
+        let order = curve_order::<D>(&self.position, cell);
+        permute(&mut self.position, &order);
+        permute(&mut self.velocity, &order);
+        permute(&mut self.acceleration, &order);
+        permute(&mut self.radius, &order);
+        permute(&mut self.mass, &order);
+        permute(&mut self.id, &order);
+        permute(&mut self.material, &order);
+        permute(&mut self.spin, &order);
+        permute(&mut self.spin_acceleration, &order);
+        order
+    }
+
+    /// Bytes that each grain takes in these arrays.
+    pub(crate) fn bytes_per_grain(&self) -> usize {
+        let vectors = 4 * size_of::<D::Vec>() + 2 * size_of::<f64>() + size_of::<u32>();
+        let material = if self.material.is_empty() { 0 } else { 1 };
+        let rotation = if self.spin.is_empty() { 0 } else { 3 * size_of::<D::Spin>() };
+        vectors + material + rotation
+    }
+
+    pub(crate) fn save(&self, to: &mut Section) {
+        to.put("position", &self.position);
+        to.put("velocity", &self.velocity);
+        to.put("acceleration", &self.acceleration);
+        to.put("radius", &self.radius);
+        to.put("mass", &self.mass);
+        to.put("id", &self.id);
+        to.put("material", &self.material);
+        to.put("spin", &self.spin);
+        to.put("spin acceleration", &self.spin_acceleration);
+    }
+
+    pub(crate) fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let (all, material, turning) = (self.len(), self.material.len(), self.spin.len());
+        self.position = from.array_of("position", all)?;
+        self.velocity = from.array_of("velocity", all)?;
+        self.acceleration = from.array_of("acceleration", all)?;
+        self.radius = from.array_of("radius", all)?;
+        self.mass = from.array_of("mass", all)?;
+        self.id = from.array_of("id", all)?;
+        self.material = from.array_of("material", material)?;
+        self.spin = from.array_of("spin", turning)?;
+        self.spin_acceleration = from.array_of("spin acceleration", turning)?;
+        Ok(())
+    }
+}
+
+fn permute<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
+    if !values.is_empty() {
+        *values = order.iter().map(|&old| values[old as usize]).collect();
+    }
+}
+
+fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(), SetupError> {
+    if !(grain.radius.is_finite() && grain.radius > 0.0) {
+        return Err(SetupError::new("radius of a grain", grain.radius, "positive and finite"));
+    }
+    if !(grain.position.is_finite() && grain.velocity.is_finite() && grain.spin.is_finite()) {
+        return Err(SetupError::new("position, velocity or spin of a grain", f64::NAN, "finite"));
+    }
+    if grain.material.0 as usize >= materials.len() {
+        let index = f64::from(grain.material.0);
+        return Err(SetupError::new("material of a grain", index, "one of the materials of this set-up"));
+    }
+    Ok(())
+}

@@ -1,0 +1,297 @@
+//! Contact laws: from the motion of two bodies at their contact to the load between them.
+//!
+//! Symbols of this module: `k` stiffness, `c` damping, `n` the unit normal from the second to
+//! the first body, `xi` tangential displacement. Tangential quantities are kept as `n x ...`
+//! (see [`granular_core::dim`]), so one source serves disks and spheres.
+
+use crate::ledger::Tally;
+use crate::material::{PairProperties, Tension};
+use granular_core::{Dim, Linear, Stored};
+use std::fmt::Debug;
+
+/// Two bodies at their contact, at the middle of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting<D: Dim> {
+    /// Unit vector from the second to the first body.
+    pub normal: D::Vec,
+    /// Overlap \[m\], averaged over the part of the step before and after the surfaces meet.
+    pub overlap: f64,
+    /// Share of the step during which the surfaces overlap, 0 to 1.
+    pub presence: f64,
+    /// Speed of approach along the normal \[m/s\].
+    pub approach: f64,
+    /// `n x` velocity of the first surface past the second \[m/s\].
+    pub slip: D::Spin,
+    /// Tangential part of the difference of spins \[rad/s\].
+    pub roll: D::Spin,
+    /// Mean spin about the normal \[rad/s\].
+    pub twist: f64,
+    /// `m1 m2 / (m1 + m2)` \[kg\].
+    pub effective_mass: f64,
+    /// `r1 r2 / (r1 + r2)` \[m\].
+    pub effective_radius: f64,
+    /// The step \[s\].
+    pub dt: f64,
+}
+
+/// What a contact does to the first body; the second gets the opposite.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<D: Dim> {
+    /// Force along the normal \[N\], positive when it repels.
+    pub normal: f64,
+    /// `n x` tangential force \[N\].
+    pub tangential: D::Spin,
+    /// Rolling moment \[N m\].
+    pub rolling: D::Spin,
+}
+
+impl<D: Dim> Load<D> {
+    /// A load along the normal.
+    #[inline(always)]
+    pub fn along_normal(force: f64) -> Self {
+        Self { normal: force, tangential: D::Spin::ZERO, rolling: D::Spin::ZERO }
+    }
+}
+
+/// A contact law. Statically typed in the kernels: pass any implementation to
+/// [`Dem::with_law`](crate::Dem::with_law).
+pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
+    /// What one contact remembers between steps; `()` when nothing. The default is a fresh contact.
+    type Memory: Copy + Default + PartialEq + Stored + Debug + Send + Sync + 'static;
+    /// Whether tangential motion matters: without it grains do not turn and have no spin.
+    const TANGENTIAL: bool;
+    /// Name, for reports.
+    const NAME: &'static str;
+
+    /// The law between two materials.
+    fn between(properties: &PairProperties, tension: Tension) -> Self;
+    /// The load over one step; dissipation is told to the tally.
+    fn load<const LEDGER: bool>(
+        &self,
+        meeting: &Meeting<D>,
+        memory: &mut Self::Memory,
+        tally: &mut Tally<LEDGER>,
+    ) -> Load<D>;
+    /// The same contact seen from the second body.
+    fn reversed(memory: Self::Memory) -> Self::Memory;
+    /// The load between steps and the energy stored in springs \[J\], for output.
+    fn at_rest(&self, meeting: &Meeting<D>, memory: Self::Memory) -> (Load<D>, f64);
+}
+
+/// Linear spring and dashpot along the normal, `F = k delta + c approach` \[DEM-3\].
+///
+/// The damping is solved per pair from the restitution asked for, `c = 2 zeta sqrt(m_eff k)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearNormal {
+    /// Normal stiffness \[N/m\].
+    pub stiffness: f64,
+    /// `2 zeta sqrt(k)`: times the root of the effective mass it is the damping.
+    pub damping_factor: f64,
+    /// Whether parting contacts may pull.
+    pub tension: Tension,
+}
+
+impl LinearNormal {
+    #[inline(always)]
+    fn force(&self, overlap: f64, presence: f64, approach: f64, damping: f64) -> f64 {
+        let force = self.stiffness * overlap + presence * damping * approach;
+        if self.tension == Tension::Cut { force.max(0.0) } else { force }
+    }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearNormal {
+    type Memory = ();
+    const TANGENTIAL: bool = false;
+    const NAME: &'static str = "linear without friction";
+
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        let stiffness = properties.normal_stiffness;
+        Self { stiffness, damping_factor: 2.0 * properties.zeta(tension) * stiffness.sqrt(), tension }
+    }
+
+    #[inline(always)]
+    fn load<const LEDGER: bool>(&self, m: &Meeting<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let force = self.force(m.overlap, m.presence, m.approach, damping);
+        // Where the cut acts, the dashpot takes up what the spring gives back.
+        tally.normal_damping(|| (force - self.stiffness * m.overlap) * m.approach * m.dt);
+        Load::along_normal(force)
+    }
+
+    fn reversed((): ()) {}
+
+    fn at_rest(&self, m: &Meeting<D>, (): ()) -> (Load<D>, f64) {
+        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let force = self.force(m.overlap, 1.0, m.approach, damping);
+        (Load::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
+    }
+}
+
+/// A spring and dashpot that slides when its force reaches a cap \[DEM-6, Cundall1979\].
+///
+/// The spring advances by half the motion of the step, gives the force, is pulled back to the
+/// cap if it slides, and advances by the other half. Stick, slide and the change between them
+/// are thereby of second order in the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slider {
+    stiffness: f64,
+    damping: f64,
+}
+
+/// Outcome of [`Slider::load`].
+struct Slid<S> {
+    /// Force on the first body.
+    force: S,
+    /// Energy lost in the dashpot over the step.
+    damped: f64,
+    /// Energy lost by sliding over the step.
+    slid: f64,
+}
+
+impl Slider {
+    #[inline(always)]
+    fn load<S: Linear>(&self, spring: &mut S, rate: S, time: f64, dt: f64, cap: f64) -> Slid<S> {
+        let half = rate * (0.5 * time);
+        let trial = *spring + half;
+        let damping = self.damping * (time / dt);
+        let stuck = -(trial * self.stiffness + rate * damping);
+        let size = stuck.length_squared();
+        if size <= cap * cap {
+            *spring = trial + half;
+            return Slid { force: stuck, damped: damping * rate.length_squared() * dt, slid: 0.0 };
+        }
+        let force = stuck * (cap / size.sqrt());
+        let middle = if self.stiffness > 0.0 { -(force * (1.0 / self.stiffness)) } else { S::ZERO };
+        // Without a spring all of the motion slides.
+        let slipped = if self.stiffness > 0.0 { trial - middle } else { rate * time };
+        *spring = if self.stiffness > 0.0 { middle + half } else { S::ZERO };
+        Slid { force, damped: 0.0, slid: -force.dot(slipped) }
+    }
+
+    /// Force and stored energy of the spring, capped.
+    fn at_rest<S: Linear>(&self, spring: S, rate: S, cap: f64) -> (S, f64) {
+        let stuck = -(spring * self.stiffness + rate * self.damping);
+        let force = if stuck.length() <= cap { stuck } else { stuck * (cap / stuck.length()) };
+        let elastic = (self.stiffness * spring.length()).min(cap);
+        (force, if self.stiffness > 0.0 { 0.5 * elastic * elastic / self.stiffness } else { 0.0 })
+    }
+}
+
+/// [`LinearNormal`] with a tangential spring under a Coulomb cap \[DEM-6, DEM-7\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearFrictional {
+    /// Along the normal.
+    pub normal: LinearNormal,
+    /// Tangential stiffness \[N/m\].
+    pub tangential_stiffness: f64,
+    /// Tangential over normal damping coefficient \[-\].
+    pub damping_ratio: f64,
+    /// Coulomb friction \[-\].
+    pub friction: f64,
+}
+
+impl LinearFrictional {
+    #[inline(always)]
+    fn slider(&self, effective_mass: f64) -> Slider {
+        let damping = self.damping_ratio * self.normal.damping_factor * effective_mass.sqrt();
+        Slider { stiffness: self.tangential_stiffness, damping }
+    }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearFrictional {
+    type Memory = D::Spin;
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "linear with friction";
+
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self {
+            normal: <LinearNormal as ContactLaw<D>>::between(properties, tension),
+            tangential_stiffness: properties.tangential_stiffness,
+            damping_ratio: properties.damping_ratio,
+            friction: properties.friction,
+        }
+    }
+
+    #[inline(always)]
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Meeting<D>,
+        memory: &mut D::Spin,
+        tally: &mut Tally<LEDGER>,
+    ) -> Load<D> {
+        let mut load: Load<D> = self.normal.load(m, &mut (), tally);
+        let cap = self.friction * load.normal.max(0.0);
+        *memory = D::follow(*memory, m.normal, m.twist * m.dt);
+        let slid = self.slider(m.effective_mass).load(memory, m.slip, m.presence * m.dt, m.dt, cap);
+        tally.tangential_damping(|| slid.damped);
+        tally.sliding(|| slid.slid);
+        load.tangential = slid.force;
+        load
+    }
+
+    fn reversed(memory: D::Spin) -> D::Spin {
+        // n and xi both change sign, so n x xi does not.
+        memory
+    }
+
+    fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
+        let (mut load, energy) = self.normal.at_rest(m, ());
+        let cap = self.friction * load.normal.max(0.0);
+        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, cap);
+        load.tangential = force;
+        (load, energy + stored)
+    }
+}
+
+/// [`LinearFrictional`] with a rolling spring of the same stiffness and damping, its moment
+/// capped at `rolling_friction * F_n * effective radius` \[DEM-9; Luding2008, eq. 31-37\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearRolling {
+    /// Normal and tangential.
+    pub frictional: LinearFrictional,
+    /// Rolling resistance \[-\].
+    pub rolling_friction: f64,
+}
+
+impl<D: Dim> ContactLaw<D> for LinearRolling {
+    type Memory = [D::Spin; 2];
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "linear with friction and rolling resistance";
+
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self {
+            frictional: <LinearFrictional as ContactLaw<D>>::between(properties, tension),
+            rolling_friction: properties.rolling_friction,
+        }
+    }
+
+    #[inline(always)]
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Meeting<D>,
+        [sliding, rolling]: &mut [D::Spin; 2],
+        tally: &mut Tally<LEDGER>,
+    ) -> Load<D> {
+        let mut load: Load<D> = self.frictional.load(m, sliding, tally);
+        let cap = self.rolling_friction * load.normal.max(0.0);
+        *rolling = D::follow(*rolling, m.normal, m.twist * m.dt);
+        let rate = m.roll * m.effective_radius;
+        let slid = self.frictional.slider(m.effective_mass).load(rolling, rate, m.presence * m.dt, m.dt, cap);
+        tally.rolling(|| slid.damped + slid.slid);
+        load.rolling = slid.force * m.effective_radius;
+        load
+    }
+
+    fn reversed([sliding, rolling]: [D::Spin; 2]) -> [D::Spin; 2] {
+        [sliding, -rolling]
+    }
+
+    fn at_rest(&self, m: &Meeting<D>, [sliding, rolling]: [D::Spin; 2]) -> (Load<D>, f64) {
+        let (mut load, energy) = self.frictional.at_rest(m, sliding);
+        let cap = self.rolling_friction * load.normal.max(0.0);
+        let rate = m.roll * m.effective_radius;
+        let (force, stored) = self.frictional.slider(m.effective_mass).at_rest(rolling, rate, cap);
+        load.rolling = force * m.effective_radius;
+        (load, energy + stored)
+    }
+}

@@ -1,0 +1,209 @@
+//! What bounds the step, and what the scene costs in memory.
+
+use crate::dem::{Dem, LeverArm};
+use crate::material::{PairProperties, Tension};
+use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
+
+/// Overlap over radius above which an impact is called too soft.
+const SOFT: f64 = 0.05;
+
+/// The stiffest meeting that a scene allows between two materials.
+struct Stiffest {
+    properties: PairProperties,
+    effective_mass: f64,
+    names: String,
+}
+
+impl<D: Dim> Dem<D> {
+    /// The recommended step \[s\]: a fraction of the shortest contact time, and within the
+    /// stability limit.
+    pub fn recommended_step(&self) -> f64 {
+        let mut limits = Limits::default();
+        self.report_limits(&mut limits);
+        limits.recommended().map_or(1e-3, |limit| limit.dt)
+    }
+
+    /// Largest stable step \[s\], from [`stability_step`] of every pair of materials.
+    pub fn stable_step(&self) -> f64 {
+        let mut limits = Limits::default();
+        self.report_limits(&mut limits);
+        limits.largest_allowed().map_or(f64::INFINITY, |limit| limit.dt)
+    }
+
+    pub(crate) fn report_limits(&self, report: &mut Limits) {
+        let tension = self.options.tension;
+        let stiffest = self.stiffest_pairs();
+        let time = |pair: &Stiffest| pair.properties.contact_time(pair.effective_mass, tension);
+        let Some(shortest) = stiffest.iter().min_by(|a, b| time(a).total_cmp(&time(b))) else { return };
+        let fraction = self.options.steps_per_contact;
+        report.steps.push(StepLimit {
+            name: "contact time",
+            dt: time(shortest) / fraction,
+            rule: StepRule::Recommended,
+            why: format!(
+                "1/{fraction} of the shortest contact time, {:.4e} s ({}, lightest grains)",
+                time(shortest),
+                shortest.names
+            ),
+        });
+        let neighbours = self.most_neighbours();
+        let turns = self.turns();
+        let step = |pair: &Stiffest| {
+            stability_step::<D>(&pair.properties, pair.effective_mass, tension, neighbours, turns)
+        };
+        let Some(tightest) = stiffest.iter().min_by(|a, b| step(a).total_cmp(&step(b))) else { return };
+        report.steps.push(StepLimit {
+            name: "stability",
+            dt: step(tightest),
+            rule: StepRule::AtMost,
+            why: format!("leapfrog with damping, {neighbours} contacts per grain, {}", tightest.names),
+        });
+        report.bounds.push(self.softness(&stiffest));
+        report.bounds.push(Bound {
+            name: "overlap at the start",
+            value: 100.0 * self.deepest_overlap(),
+            allowed: 100.0 * SOFT,
+            unit: "% of the radius",
+            refuses: true,
+            why: "overlapping grains fly apart; place them apart or raise the stiffness".to_owned(),
+        });
+    }
+
+    /// For every pair of materials that can touch, the lightest grains.
+    fn stiffest_pairs(&self) -> Vec<Stiffest> {
+        let count = self.materials.len();
+        let mut lightest = vec![f64::INFINITY; count];
+        for index in 0..self.len() {
+            let place = &mut lightest[self.grains.material_of(index)];
+            *place = place.min(self.grains.mass[index]);
+        }
+        let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
+        let mut pairs = Vec::new();
+        for (a, b, properties) in self.materials.pairs() {
+            let (m, n) = (lightest[a], lightest[b]);
+            if m.is_finite() && n.is_finite() {
+                let names = "grain on grain".to_owned();
+                pairs.push(Stiffest { properties, effective_mass: m * n / (m + n), names });
+            }
+            let mass = if walls.contains(&b) { m } else { f64::INFINITY };
+            let mass = if walls.contains(&a) { mass.min(n) } else { mass };
+            if mass.is_finite() {
+                pairs.push(Stiffest { properties, effective_mass: mass, names: "grain on wall".to_owned() });
+            }
+        }
+        pairs
+    }
+
+    /// Contacts that one of the smallest grains can have at once.
+    fn most_neighbours(&self) -> usize {
+        let kissing = if D::N == 2 { 6 } else { 12 };
+        kissing.min((self.len().saturating_sub(1) + self.walls.len()).max(1))
+    }
+
+    /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
+    /// through the height of the sample.
+    fn softness(&self, pairs: &[Stiffest]) -> Bound {
+        let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
+        let gravity = self.gravity.length();
+        let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
+        let fastest = speed.max(fall);
+        let (smallest, _) = self.grains.radius_range();
+        let depth =
+            |pair: &Stiffest| fastest * (pair.effective_mass / pair.properties.normal_stiffness).sqrt();
+        let deepest = pairs.iter().map(depth).fold(0.0, f64::max);
+        Bound {
+            name: "overlap of the hardest impact",
+            value: 100.0 * deepest / smallest,
+            allowed: 100.0 * crate::contacts::DEEPEST,
+            unit: "% of the radius",
+            refuses: true,
+            why: format!("two grains that meet at {fastest:.3} m/s; raise the normal stiffness"),
+        }
+    }
+
+    fn extent_along_gravity(&self) -> f64 {
+        let direction = self.gravity * (1.0 / self.gravity.length());
+        let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
+        let lowest = -self.blocks.largest(|i| self.grains.position[i].dot(direction));
+        (highest - lowest).max(0.0)
+    }
+
+    /// Largest overlap over the radius of the smaller grain.
+    pub fn deepest_overlap(&self) -> f64 {
+        let mut deepest = 0.0_f64;
+        self.pairs.visit(&self.view(), &mut |contact| {
+            let own = self.grains.radius[contact.first];
+            let smaller = match contact.partner {
+                crate::Partner::Grain(second) => own.min(self.grains.radius[second]),
+                crate::Partner::Wall(_) => own,
+            };
+            deepest = deepest.max(contact.overlap / smaller);
+        });
+        deepest
+    }
+
+    pub(crate) fn report_memory(&self) -> Memory {
+        let (lists, per_contact) = self.pairs.bytes();
+        let per_grain = self.grains.bytes_per_grain();
+        let mut left_out = Vec::new();
+        if !self.turns() {
+            left_out.push("rotation: nothing couples to it without friction".to_owned());
+        }
+        if per_contact == 0 {
+            left_out.push("contact history: the law remembers nothing".to_owned());
+        }
+        if self.grains.material.is_empty() {
+            left_out.push("material per grain: there is one".to_owned());
+        }
+        if !self.options.ledger {
+            left_out.push("energy ledger: no output asks for losses".to_owned());
+        }
+        if D::N == 2 {
+            left_out.push("third axis: the scene is plane".to_owned());
+        }
+        let listed = if self.is_empty() { 0 } else { lists / self.len() };
+        Memory { bytes: self.len() * per_grain + lists, bytes_per_item: per_grain + listed, left_out }
+    }
+
+    /// A one-line description of method and law, for reports.
+    pub fn description(&self) -> String {
+        let arm =
+            if self.options.lever_arm == LeverArm::Exact { "exact lever arms" } else { "arms of one radius" };
+        let tension = if self.options.tension == Tension::Cut { "tension cut" } else { "tension kept" };
+        format!("{} {}s, {}, {tension}, {arm}", self.size().0, D::BALL, self.pairs.law_name())
+    }
+}
+
+/// Largest stable step of the scheme for a grain with `neighbours` equal contacts.
+///
+/// For one oscillator of frequency `w` and damping ratio `zeta`, the leapfrog with the predicted
+/// velocity is stable while `w^2 dt^2 + 8 zeta w dt <= 4`, that is `w dt <= 2 (sqrt(1 + 4
+/// zeta^2) - 2 zeta)` (the root -1 of its characteristic polynomial; checked by tests from both
+/// sides). A grain in a packing answers at most as fast as if each contact had its share
+/// `1/neighbours` of the masses, `w^2 = neighbours * w_pair^2`; a tangential spring adds the
+/// rotation, `w_t^2 = (1 + 1/q) k_t / m_eff` with `q` the inertia factor.
+pub fn stability_step<D: Dim>(
+    pair: &PairProperties,
+    effective_mass: f64,
+    tension: Tension,
+    neighbours: usize,
+    turns: bool,
+) -> f64 {
+    let zeta = pair.zeta(tension);
+    let normal = pair.normal_stiffness / effective_mass;
+    let normal_damping = 2.0 * zeta * normal.sqrt();
+    let gain = 1.0 + 1.0 / D::BALL_INERTIA;
+    let share = neighbours as f64;
+    let limit = |stiffness: f64, damping: f64| {
+        let (w2, c) = (stiffness * share, damping * share);
+        // w2 dt^2 + 4 c dt = 4 with c = 2 zeta w.
+        2.0 * ((c * c + w2).sqrt() - c) / w2
+    };
+    let along = limit(normal, normal_damping);
+    if !turns || pair.tangential_stiffness <= 0.0 {
+        return along;
+    }
+    let across =
+        limit(gain * pair.tangential_stiffness / effective_mass, gain * pair.damping_ratio * normal_damping);
+    along.min(across)
+}

@@ -1,0 +1,137 @@
+//! Walls: planes, segments and boxes, each with its own material.
+
+use crate::material::{MaterialId, SetupError};
+use granular_core::{Dim, Linear, Vector};
+
+/// The surface of a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape<D: Dim> {
+    /// A half-space: grains are on the side to which the normal points.
+    Plane {
+        /// A point on the plane \[m\].
+        point: D::Vec,
+        /// Unit normal.
+        normal: D::Vec,
+    },
+    /// A straight line between two points, touched from both sides and at its ends; in space a
+    /// thin rod.
+    Segment {
+        /// One end \[m\].
+        from: D::Vec,
+        /// Other end \[m\].
+        to: D::Vec,
+    },
+    /// A solid block with edges along the axes, touched from outside. With no extent along one
+    /// axis it is a plate.
+    Block {
+        /// Lower corner \[m\].
+        low: D::Vec,
+        /// Upper corner \[m\].
+        high: D::Vec,
+    },
+}
+
+impl<D: Dim> Shape<D> {
+    /// Distance of a point from the surface \[m\] and the unit normal from the surface to the
+    /// point. Inside a block the distance is zero and there is no direction.
+    #[inline]
+    pub fn distance(&self, point: D::Vec) -> (f64, D::Vec) {
+        let nearest = match *self {
+            Self::Plane { point: on, normal } => return ((point - on).dot(normal), normal),
+            Self::Segment { from, to } => {
+                let along = to - from;
+                let share = (point - from).dot(along) / along.length_squared();
+                from + along * share.clamp(0.0, 1.0)
+            }
+            Self::Block { low, high } => point.max(low).min(high),
+        };
+        let arm = point - nearest;
+        let distance = arm.length();
+        if distance > 0.0 { (distance, arm * (1.0 / distance)) } else { (0.0, D::Vec::ZERO) }
+    }
+}
+
+/// A wall at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall<D: Dim> {
+    /// Name, unique in a scene.
+    pub name: String,
+    /// Surface.
+    pub shape: Shape<D>,
+    /// Material.
+    pub material: MaterialId,
+    /// Whether it is out of the way: an open gate.
+    pub open: bool,
+}
+
+impl<D: Dim> Wall<D> {
+    /// A plane through `point` \[m\]; grains are on the side to which `normal` points (any length).
+    ///
+    /// # Errors
+    /// When the normal has no direction.
+    pub fn plane(
+        name: &str,
+        point: D::Vec,
+        normal: D::Vec,
+        material: MaterialId,
+    ) -> Result<Self, SetupError> {
+        let length = normal.length();
+        if !(length.is_finite() && length > 0.0 && point.is_finite()) {
+            return Err(SetupError::new(format!("normal of wall `{name}`"), length, "a finite direction"));
+        }
+        Ok(Self::of(name, Shape::Plane { point, normal: normal * (1.0 / length) }, material))
+    }
+
+    /// A segment between two points \[m\].
+    ///
+    /// # Errors
+    /// When the points coincide or are not finite.
+    pub fn segment(name: &str, from: D::Vec, to: D::Vec, material: MaterialId) -> Result<Self, SetupError> {
+        let length = (to - from).length();
+        if !(length.is_finite() && length > 0.0) {
+            return Err(SetupError::new(format!("length of wall `{name}`"), length, "positive and finite"));
+        }
+        Ok(Self::of(name, Shape::Segment { from, to }, material))
+    }
+
+    /// A solid block between two corners \[m\].
+    ///
+    /// # Errors
+    /// When the upper corner is below the lower one, or a corner is not finite.
+    pub fn block(name: &str, low: D::Vec, high: D::Vec, material: MaterialId) -> Result<Self, SetupError> {
+        let extent = (0..D::N).map(|axis| (high - low).component(axis)).fold(f64::INFINITY, f64::min);
+        if !(extent >= 0.0 && low.is_finite() && high.is_finite()) {
+            return Err(SetupError::new(
+                format!("extent of wall `{name}`"),
+                extent,
+                "zero or more, and finite",
+            ));
+        }
+        Ok(Self::of(name, Shape::Block { low, high }, material))
+    }
+
+    fn of(name: &str, shape: Shape<D>, material: MaterialId) -> Self {
+        Self { name: name.to_owned(), shape, material, open: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use granular_core::D2;
+    use granular_core::glam::DVec2;
+
+    #[test]
+    fn distances_follow_the_nearest_point() {
+        let material = MaterialId(0);
+        let segment = Wall::<D2>::segment("s", DVec2::ZERO, DVec2::X, material).unwrap();
+        assert_eq!(segment.shape.distance(DVec2::new(0.3, -2.0)), (2.0, -DVec2::Y));
+        assert_eq!(segment.shape.distance(DVec2::new(4.0, 4.0)).0, 5.0);
+        let block = Wall::<D2>::block("b", DVec2::ZERO, DVec2::ONE, material).unwrap();
+        assert_eq!(block.shape.distance(DVec2::new(1.5, 0.5)), (0.5, DVec2::X));
+        let plane = Wall::<D2>::plane("p", DVec2::ZERO, DVec2::new(0.0, 7.0), material).unwrap();
+        assert_eq!(plane.shape.distance(DVec2::new(3.0, -0.5)), (-0.5, DVec2::Y));
+        assert!(Wall::<D2>::plane("p", DVec2::ZERO, DVec2::ZERO, material).is_err());
+        assert!(Wall::<D2>::block("b", DVec2::ONE, DVec2::ZERO, material).is_err());
+    }
+}

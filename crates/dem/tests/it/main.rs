@@ -1,0 +1,3 @@
+//! Integration tests of the discrete element method.
+
+mod impact;

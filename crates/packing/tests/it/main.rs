@@ -1,0 +1,4 @@
+//! Whole samples: every disk of a deposit is looked at.
+
+mod ballistic;
+mod sample;
