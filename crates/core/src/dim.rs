@@ -77,6 +77,8 @@ pub trait Spin: Linear {
     fn about_z(rate: f64) -> Self;
     /// The component about z, the only one in the plane.
     fn z(self) -> f64;
+    /// From components about x, y and z; the plane takes z.
+    fn of_components(components: [f64; 3]) -> Self;
 }
 
 /// The plane or the space. Sealed: only [`D2`] and [`D3`].
@@ -147,6 +149,9 @@ impl Spin for f64 {
     fn z(self) -> f64 {
         self
     }
+    fn of_components([_, _, z]: [f64; 3]) -> Self {
+        z
+    }
 }
 
 impl Spin for DVec3 {
@@ -156,6 +161,9 @@ impl Spin for DVec3 {
     #[inline(always)]
     fn z(self) -> f64 {
         self.z
+    }
+    fn of_components(components: [f64; 3]) -> Self {
+        components.into()
     }
 }
 

@@ -42,6 +42,8 @@ mod lists;
 pub mod material;
 mod motion;
 mod show;
+#[cfg(feature = "serde")]
+pub mod spec;
 pub mod wall;
 
 pub use contacts::{Contact, Partner};

@@ -1,3 +1,21 @@
-//! In the making.
+//! Granular flows from one scene file: the library behind the `granular` command.
+//!
+//! A [`scene::Scene`] is read from RON by [`scene_file`], checked and built into a
+//! [`model::Model`], and run stage by stage.
 
+pub mod check;
+pub mod failure;
+pub mod figures;
+pub mod folder;
+pub mod model;
+mod observers;
+mod progress;
+pub mod run;
+pub mod scene;
 pub mod scene_file;
+
+/// Scenes to start from: name and text. The first line of each is a comment that says what it is.
+pub const TEMPLATES: &[(&str, &str)] = &[
+    ("column-collapse", include_str!("../templates/column-collapse.ron")),
+    ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
+];

@@ -131,7 +131,7 @@ impl Frame {
     }
 
     /// Pairs of points that are linked.
-    pub fn links(&self) -> &[[u32; 2]] {
+    pub fn pairs(&self) -> &[[u32; 2]] {
         &self.links
     }
 
@@ -202,10 +202,10 @@ impl FieldSink for Frame {
 
 /// Coordinates \[m\] of the points, z = 0 in the plane.
 pub(crate) fn coordinates(path: &Path, location: &Location<'_>) -> Result<Vec<[f64; 3]>, IoError> {
-    if let Location::Points(field) = location {
-        if let Values::Vector(points) = Values::from(*field) {
-            return Ok(points);
-        }
+    if let Location::Points(field) = location
+        && let Values::Vector(points) = Values::from(*field)
+    {
+        return Ok(points);
     }
     Err(IoError::new("write", path, "the solver has no points; its fields live on a grid"))
 }

@@ -4,9 +4,11 @@
 //! `TimeValue`, the numbers of the frame, and a text array `units` with one `name: unit` a field.
 
 mod collection;
+mod read;
 mod xml;
 
 pub use collection::Collection;
+pub use read::{Points, read_vtp};
 
 use crate::error::IoError;
 use crate::frame::{Field, Frame, Grid, coordinates};
@@ -50,7 +52,7 @@ pub fn write_links_vtp(
     time: f64,
 ) -> Result<(), IoError> {
     let points = coordinates(path, location)?;
-    let links = frame.links();
+    let links = frame.pairs();
     Frame::check(path, frame.link_fields(), links.len(), "links")?;
     if let Some(bad) = links.iter().flatten().find(|&&end| end as usize >= points.len()) {
         let reason = format!("a link names point {bad} of {}", points.len());

@@ -50,7 +50,9 @@
 //! - [`ballistic`] is for the plane: in space use [`loose_lattice`] and let a solver settle it.
 //! - Its packing is stable grain by grain under gravity, but not in equilibrium: forces on the
 //!   lower grains come later, so let it relax in a solver before use.
-//! - Densities are what the method gives (about 0.82 for disks of one size), not a target.
+//! - Densities are what the method gives (about 0.82 for disks of one size), not a target. Equal
+//!   disks repeat the gaps of their first layers all the way up: the density scatters from
+//!   seed to seed however high the pile is, and less in a wide box.
 //! - The random numbers of a seed are the same on every machine, and so are the bits of
 //!   [`ballistic`] and of the order of a sample; radii use `exp` and `ln` of the platform and
 //!   may differ in the last place between platforms.

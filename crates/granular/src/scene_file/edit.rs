@@ -31,7 +31,7 @@ pub(super) fn set(scene: &mut SceneText, assignment: &str) -> Result<(), ScenePr
         Found::Value { node, .. } => (node.span.clone(), as_ron(value, node.is(Kind::Text))),
         Found::Missing { parent, segment, .. } => {
             let last = segment + 1 == path.len();
-            let inserted = last.then(|| insertion(&scene.text, parent, &path[segment])).flatten();
+            let inserted = last.then(|| insertion(parent, &path[segment])).flatten();
             let Some((at, before)) = inserted else {
                 let (message, hint) = no_parent(&scene.text, parent, &path, segment);
                 return Err(SceneProblem { hint, ..wrong(message) });
@@ -78,7 +78,7 @@ fn quoted(value: &str) -> String {
 }
 
 /// Where a key can be added to a value, with what comes before its value.
-fn insertion(text: &str, parent: &Node, key: &str) -> Option<(usize, String)> {
+fn insertion(parent: &Node, key: &str) -> Option<(usize, String)> {
     let Shape::Group(group) = &parent.shape else { return None };
     let named = group.entries.iter().all(|entry| entry.key.is_some());
     let key = match group.bracket {
@@ -90,8 +90,7 @@ fn insertion(text: &str, parent: &Node, key: &str) -> Option<(usize, String)> {
     let last = group.entries.last().and_then(|entry| entry.value.as_ref().or(entry.key.as_ref()));
     Some(match last {
         Some(last) => (last.span.end, format!(", {key}: ")),
-        None if text[group.open..].starts_with(group.bracket) => (group.open + 1, format!("{key}: ")),
-        None => return None,
+        None => (group.open + 1, format!("{key}: ")),
     })
 }
 

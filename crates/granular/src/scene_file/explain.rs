@@ -144,11 +144,34 @@ impl Context<'_> {
             let message = format!("expected a whole number, found `{}`", shortened(found));
             return self.at_token(&message, Some("a whole number has no decimals"));
         }
+        if let Some(problem) = self.without_values(code, token) {
+            return problem;
+        }
         let Some(wanted) = wanted(code) else { return self.at_token(&plain(code), None) };
         let message = format!("expected {wanted}, found `{}`", shortened(found));
         let mut problem = self.at_token(&message, Some(&format!("expected {wanted}")));
-        problem.hint = hint(code, token.kind, found);
+        problem.hint = hint(code, token.kind, found).or_else(|| self.unit_without_quotes(code, token));
         problem
+    }
+
+    /// A variant such as `For` that lacks its values.
+    fn without_values(&self, code: &Error, token: &Token) -> Option<SceneProblem> {
+        let ended = matches!(token.kind, Kind::Mark(',' | ')' | ']' | '}'));
+        let before = self.tree.tokens.partition_point(|other| other.span.start < token.span.start);
+        let name = self.tree.tokens[..before].last().filter(|name| ended && name.kind == Kind::Word)?;
+        let message = format!("`{}` needs values in round brackets", &self.scene.text[name.span.clone()]);
+        matches!(code, Error::ExpectedStructLike)
+            .then(|| self.problem(message).at(self.scene, name.span.clone(), "without values"))
+    }
+
+    /// A number with a word behind it is most often a value with its unit.
+    fn unit_without_quotes(&self, code: &Error, token: &Token) -> Option<String> {
+        let at = self.tree.tokens.partition_point(|other| other.span.start < token.span.start);
+        let number = at.checked_sub(1).is_some_and(|before| self.tree.tokens[before].kind == Kind::Number);
+        let key = self.tree.tokens.get(at + 1).is_some_and(|after| after.kind == Kind::Mark(':'));
+        let unit = token.kind == Kind::Word && number && !key;
+        (unit && matches!(code, Error::ExpectedComma))
+            .then(|| "a value with a unit is written in double quotes".to_owned())
     }
 
     /// A bracket without its partner explains most errors that come after it.
@@ -198,11 +221,14 @@ fn wanted(code: &Error) -> Option<String> {
         Error::ExpectedChar => "a character in single quotes".to_owned(),
         Error::ExpectedArray => "a list in square brackets".to_owned(),
         Error::ExpectedMap => "a map in braces".to_owned(),
-        Error::ExpectedIdentifier => "a name".to_owned(),
+        Error::ExpectedIdentifier | Error::SuggestRawIdentifier(_) | Error::InvalidIdentifier(_) => {
+            "a name".to_owned()
+        }
+        Error::ExpectedStringEnd => "`\"` at the end of this text".to_owned(),
         Error::ExpectedComma => "a comma".to_owned(),
         Error::ExpectedMapColon => "`:` and a value".to_owned(),
         Error::ExpectedStructLike => "values in round brackets".to_owned(),
-        Error::ExpectedNamedStructLike(name) if name.is_empty() => "values in round brackets".to_owned(),
+        Error::ExpectedNamedStructLike("") => "values in round brackets".to_owned(),
         Error::ExpectedNamedStructLike(name) => format!("`{name}(...)` or `(...)`"),
         Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => "`)`".to_owned(),
         Error::ExpectedArrayEnd => "`]`".to_owned(),
@@ -229,6 +255,7 @@ fn hint(code: &Error, kind: Kind, found: &str) -> Option<String> {
         (Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_), Kind::Mark('{')) => {
             "keys without quotes belong in round brackets: `(key: value)`".to_owned()
         }
+        (Error::ExpectedStructLikeEnd, _) => "there is perhaps one value too many".to_owned(),
         (Error::ExpectedMapColon, Kind::Mark('=')) => "a value is given by `key: value`".to_owned(),
         _ => return None,
     })

@@ -3,7 +3,7 @@
 use super::tokens::Kind;
 use super::tree::{Entry, Group, Node, Shape};
 
-/// Reads a path up to `=`; returns its segments and the rest from `=` on.
+/// Reads a path up to `=`, with `walls.0` or `walls[0]` for items; returns its segments and the rest from `=` on.
 pub(super) fn parse_path(text: &str) -> Option<(Vec<String>, &str)> {
     let mut segments = Vec::new();
     let mut rest = text.trim_start();
@@ -14,7 +14,7 @@ pub(super) fn parse_path(text: &str) -> Option<(Vec<String>, &str)> {
             segment = quoted[..end].to_owned();
             rest = quoted[end + 1..].trim_start();
         } else {
-            let end = rest.find(['.', '=']).unwrap_or(rest.len());
+            let end = rest.find(['.', '=', '[']).unwrap_or(rest.len());
             segment = rest[..end].trim().to_owned();
             rest = &rest[end..];
             if segment.is_empty() {
@@ -22,6 +22,11 @@ pub(super) fn parse_path(text: &str) -> Option<(Vec<String>, &str)> {
             }
         }
         segments.push(segment);
+        while let Some(index) = rest.strip_prefix('[') {
+            let end = index.find(']').filter(|end| *end > 0)?;
+            segments.push(index[..end].trim().to_owned());
+            rest = index[end + 1..].trim_start();
+        }
         match rest.strip_prefix('.') {
             Some(next) => rest = next.trim_start(),
             None if rest.is_empty() || rest.starts_with('=') => return Some((segments, rest)),
@@ -36,7 +41,7 @@ pub(super) fn write_path(segments: &[String]) -> String {
         .iter()
         .map(|segment| {
             let plain =
-                !segment.is_empty() && !segment.contains(['.', '=', '"']) && segment.trim() == segment;
+                !segment.is_empty() && !segment.contains(['.', '=', '"', '[']) && segment.trim() == segment;
             if plain { segment.clone() } else { format!("\"{segment}\"") }
         })
         .collect();

@@ -134,10 +134,12 @@ fn quoted(inner: &str, quote: char) -> Option<usize> {
 
 /// Length of a character in quotes; a quote alone is none.
 fn character(rest: &str) -> Option<usize> {
-    let inner = rest.strip_prefix('\'')?;
     // The longest is an escape such as '\u{10FFFF}'.
-    let length = quoted(inner, '\'').filter(|length| *length <= 11)?;
-    let one = inner.starts_with('\\') || inner.chars().count() == 2 || inner.chars().nth(1) == Some('\'');
+    const LONGEST: usize = 11;
+    let inner = rest.strip_prefix('\'')?;
+    let end = inner.char_indices().nth(LONGEST).map_or(inner.len(), |(byte, _)| byte);
+    let length = quoted(&inner[..end], '\'')?;
+    let one = inner.starts_with('\\') || inner.chars().nth(1) == Some('\'');
     one.then_some(1 + length)
 }
 

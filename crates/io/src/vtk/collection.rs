@@ -26,13 +26,12 @@ impl Collection {
         Ok(collection)
     }
 
-    /// Reads a collection that was written here and keeps its first `count` files, as at the time
-    /// of a snapshot.
+    /// Reads a collection that was written here.
     ///
     /// # Errors
-    /// When the file cannot be read or holds fewer.
-    pub fn reopen_at(path: &Path, count: usize) -> Result<Self, IoError> {
-        let fail = IoError::on("reopen", path);
+    /// When the file cannot be read.
+    pub fn open(path: &Path) -> Result<Self, IoError> {
+        let fail = IoError::on("read", path);
         let text = fs::read_to_string(path).map_err(|error| fail(error.to_string()))?;
         let mut entries = Vec::new();
         for line in text.lines().filter(|line| line.starts_with("<DataSet ")) {
@@ -40,11 +39,20 @@ impl Collection {
             let entry = time.zip(attribute(line, "file").map(unescaped));
             entries.push(entry.ok_or_else(|| fail(format!("`{line}` has no time or file")))?);
         }
-        if entries.len() < count {
-            return Err(fail(format!("it lists {} files where {count} are expected", entries.len())));
+        Ok(Self { path: path.to_path_buf(), entries })
+    }
+
+    /// Reads a collection and keeps its first `count` files, as at the time of a snapshot.
+    ///
+    /// # Errors
+    /// When the file cannot be read or holds fewer.
+    pub fn reopen_at(path: &Path, count: usize) -> Result<Self, IoError> {
+        let mut collection = Self::open(path)?;
+        if collection.len() < count {
+            let reason = format!("it lists {} files where {count} are expected", collection.len());
+            return Err(IoError::new("reopen", path, reason));
         }
-        entries.truncate(count);
-        let collection = Self { path: path.to_path_buf(), entries };
+        collection.entries.truncate(count);
         collection.save()?;
         Ok(collection)
     }

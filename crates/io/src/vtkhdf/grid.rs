@@ -100,6 +100,7 @@ impl VtkHdfGrid {
         }
         let (fields, numbers) = self.arrays.as_ref().expect("they were made above");
         fields.check(frame.fields())?;
+        self.steps.begin()?;
         fields.append(frame.fields(), self.steps.done() as i64)?;
         numbers.append(frame)?;
         self.steps.commit(time)

@@ -99,6 +99,7 @@ impl VtkHdfPoints {
         }
         let layout = self.layout.as_ref().expect("it was made above");
         layout.fields.check(frame.fields())?;
+        self.steps.begin()?;
         layout.append(points, frame, self.steps.done() as i64)?;
         self.steps.commit(time)
     }

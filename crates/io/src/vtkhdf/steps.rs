@@ -18,6 +18,8 @@ pub(super) struct Steps {
     count: Attribute,
     times: Dataset,
     done: usize,
+    /// Whether a step was begun and not ended: its rows are then out of line.
+    open: bool,
 }
 
 impl Steps {
@@ -32,7 +34,7 @@ impl Steps {
         let count = group.new_attr::<i64>().create("NSteps")?;
         count.write_scalar(&0_i64)?;
         let times = growing::<f64>(&group, "Values", &[], STEPS)?;
-        Ok(Self { file, root, group, count, times, done: 0 })
+        Ok(Self { file, root, group, count, times, done: 0, open: false })
     }
 
     /// Opens a file and drops the steps from `steps` on; the arrays are still to be cut.
@@ -50,11 +52,20 @@ impl Steps {
         file.flush()?;
         let times = group.dataset("Values")?;
         truncate(&times, steps)?;
-        Ok(Self { file, root, group, count, times, done: steps })
+        Ok(Self { file, root, group, count, times, done: steps, open: false })
     }
 
     pub(super) fn done(&self) -> usize {
         self.done
+    }
+
+    /// Begins a step.
+    pub(super) fn begin(&mut self) -> Result<()> {
+        if self.open {
+            return Err("an earlier frame failed half-way; the file must be reopened first".into());
+        }
+        self.open = true;
+        Ok(())
     }
 
     /// Ends a step: all that was appended since the last one counts from here on.
@@ -65,6 +76,7 @@ impl Steps {
         self.count.write_scalar(&(self.done as i64 + 1))?;
         self.file.flush()?;
         self.done += 1;
+        self.open = false;
         Ok(())
     }
 }

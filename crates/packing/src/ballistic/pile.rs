@@ -32,6 +32,8 @@ struct Roll {
     sense: f64,
     /// The anchor before this one, which the disk has just left.
     left: Option<Member>,
+    /// Whether the disk stood on top of the anchor and could not go the other way.
+    turned: bool,
 }
 
 /// A place of rest.
@@ -150,7 +152,10 @@ impl Pile {
         let point = DVec2::new(from.x, height);
         match met {
             None => Step::Rest(Rest { point, supports: [Support::Floor; 2] }),
-            Some(anchor) => Step::Roll(Roll { anchor, point, sense: self.sense(point, anchor), left: None }),
+            Some(anchor) => {
+                let sense = self.sense(point, anchor);
+                Step::Roll(Roll { anchor, point, sense, left: None, turned: false })
+            }
         }
     }
 
@@ -180,15 +185,21 @@ impl Pile {
             }
             // Both lie on the same side: the lower one takes over.
             Kind::Grain(other) => {
-                return Step::Roll(Roll { anchor: other, point, sense, left: Some(anchor.member) });
+                let left = Some(anchor.member);
+                return Step::Roll(Roll { anchor: other, point, sense, left, turned: false });
             }
         };
+        // On top of the anchor, but for round-off: what stops the disk here is no support.
+        let on_top = sense * event.offset.x <= BEHIND * (radius + anchor.radius);
+        if on_top && !roll.turned {
+            return Step::Roll(Roll { sense: -sense, left: None, turned: true, ..roll });
+        }
         Step::Rest(Rest { point, supports: [support, other] })
     }
 
     /// The first of all that the disk meets on its way around the anchor.
     fn first_event(&self, radius: f64, roll: &Roll) -> Event {
-        let Roll { anchor, point, sense, left } = *roll;
+        let Roll { anchor, point, sense, left, .. } = *roll;
         let reach = radius + anchor.radius;
         let start = point - anchor.centre;
         let earliest = sense * start.x - start.y - BEHIND * reach;
@@ -196,7 +207,9 @@ impl Pile {
         let mut event = Event { progress: reach, offset: equator, kind: Kind::LoseContact };
         let mut consider = |offset: DVec2, kind: Kind| {
             let progress = sense * offset.x - offset.y;
-            if offset.y >= 0.0 && progress >= earliest && progress < event.progress {
+            // The upper quarter ahead only: behind it, progress would begin to count anew.
+            let ahead = offset.y >= 0.0 && sense * offset.x >= -BEHIND * reach;
+            if ahead && progress >= earliest && progress < event.progress {
                 event = Event { progress, offset, kind };
             }
         };

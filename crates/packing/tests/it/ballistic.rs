@@ -45,34 +45,28 @@ fn largest_overlap(deposit: &Deposit, radii: &[f64], width: f64, sides: Sides) -
     overlap
 }
 
-/// Horizontal distance from the centre to a support, and the gap there.
-fn support(
+/// Horizontal distance from the centre to a support, and the gap there: one pair, or one for
+/// each image that touches in a narrow periodic box.
+fn touching(
     deposit: &Deposit,
     radii: &[f64],
     width: f64,
     sides: Sides,
     index: usize,
     which: usize,
-) -> (f64, f64) {
+) -> Vec<(f64, f64)> {
     let (point, radius) = (deposit.positions[index], radii[index]);
     match deposit.supports[index][which] {
-        Support::Floor => (0.0, point.y - radius),
-        Support::LeftWall => (-radius, point.x - radius),
-        Support::RightWall => (radius, width - point.x - radius),
+        Support::Floor => vec![(0.0, point.y - radius)],
+        Support::LeftWall => vec![(-radius, point.x - radius)],
+        Support::RightWall => vec![(radius, width - point.x - radius)],
         Support::Grain(other) => {
             assert!((other as usize) < index, "supports are older");
             let reach = radius + radii[other as usize];
-            let near = images(deposit.positions[other as usize], width, sides).map(|image| {
-                let gap = (image - point).length() - reach;
-                (image.x - point.x, gap)
-            });
-            // A narrow box: a disk may rest on two images of one other. The second support is
-            // then the image on the other side.
-            let mut touching: Vec<(f64, f64)> = near.filter(|near| near.1.abs() < 1e-9 * reach).collect();
-            touching.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let same = deposit.supports[index][0] == deposit.supports[index][1];
-            let chosen = if same && which == 1 { touching.last() } else { touching.first() };
-            *chosen.unwrap_or_else(|| panic!("disk {index} does not touch its support {other}"))
+            images(deposit.positions[other as usize], width, sides)
+                .map(|image| (image.x - point.x, (image - point).length() - reach))
+                .filter(|near| near.1.abs() < 1e-9 * reach)
+                .collect()
         }
     }
 }
@@ -80,37 +74,47 @@ fn support(
 fn quality(deposit: &Deposit, radii: &[f64], width: f64, sides: Sides) -> Quality {
     let mut open_support = 0.0_f64;
     for (index, &radius) in radii.iter().enumerate() {
-        let first = support(deposit, radii, width, sides, index, 0);
-        let second = support(deposit, radii, width, sides, index, 1);
-        assert!(first.0 * second.0 <= 0.0, "disk {index} is not between its supports");
-        open_support = open_support.max(first.1.abs() / radius).max(second.1.abs() / radius);
+        let first = touching(deposit, radii, width, sides, index, 0);
+        let second = touching(deposit, radii, width, sides, index, 1);
+        // Round-off may put a disk that is held on both sides beside the top of its support.
+        let side = |x: f64| if x.abs() < 1e-12 * radius { 0.0 } else { x };
+        let between = first.iter().any(|a| second.iter().any(|b| side(a.0) * side(b.0) <= 0.0));
+        assert!(between, "disk {index} is not between its supports: {first:?} {second:?}");
+        for (_, gap) in first.into_iter().chain(second) {
+            open_support = open_support.max(gap.abs() / radius);
+        }
     }
     Quality { overlap: largest_overlap(deposit, radii, width, sides), open_support }
 }
 
-/// Solid fraction of the middle, ten diameters away from floor and surface.
+/// Solid fraction of the middle, ten diameters or more away from floor and surface.
 fn bulk_density(deposit: &Deposit, radii: &[f64], width: f64) -> f64 {
     let diameter = 2.0 * radii.iter().copied().fold(0.0, f64::max);
-    // The lowest column top bounds the surface: take the 90th percentile of heights as a floor of it.
+    // The surface lies above nine tenths of the centres.
     let mut heights: Vec<f64> = deposit.positions.iter().map(|point| point.y).collect();
     heights.sort_unstable_by(f64::total_cmp);
     let (low, high) = (10.0 * diameter, heights[heights.len() * 9 / 10] - 10.0 * diameter);
     let bands = Bands { base: width, low, high, thickness: high - low };
-    solid_fraction_bands::<D2>(&deposit.positions, radii, &bands).unwrap()[0]
+    solid_fraction_bands::<D2>(&deposit.positions, radii, &bands).expect("bands in the pile")[0]
 }
 
 #[test]
 fn one_size_packs_to_the_density_of_the_literature() {
-    let radii = vec![0.5; 40_000];
-    let densities: Vec<f64> = (0..3)
+    let (radii, seeds) = (vec![0.5; 30_000], 16);
+    let densities: Vec<f64> = (0..seeds)
         .map(|seed| {
-            let deposit = ballistic(&radii, 200.0, Sides::Periodic, seed).unwrap();
-            bulk_density(&deposit, &radii, 200.0)
+            let deposit = ballistic(&radii, 400.0, Sides::Periodic, seed).unwrap();
+            bulk_density(&deposit, &radii, 400.0)
         })
         .collect();
-    println!("bulk density of one size, periodic, 40 000 disks, three seeds: {densities:.4?}");
-    // Near 0.82 after [MeakinJullien1985].
+    let mean = densities.iter().sum::<f64>() / seeds as f64;
+    let variance = densities.iter().map(|density| (density - mean).powi(2)).sum::<f64>() / (seeds - 1) as f64;
+    let error = (variance / seeds as f64).sqrt();
+    println!("bulk density of one size, periodic, {seeds} seeds: {mean:.4} +- {error:.4}, {densities:.4?}");
+    // The demand is "near 0.82" (literature as the checklist quotes it). Equal disks repeat the gaps of the first layers all
+    // the way up, so that one seed scatters however high the pile is.
     assert!(densities.iter().all(|density| (0.81..0.83).contains(density)), "{densities:?}");
+    assert!((mean - 0.82).abs() < 0.004, "{mean}");
 }
 
 #[test]
@@ -160,6 +164,17 @@ fn narrow_boxes_are_sound() {
                 overlap < 1e-12 && open_support < 1e-10,
                 "{sides:?} {width}: {overlap:e} {open_support:e}"
             );
+        }
+    }
+}
+
+#[test]
+fn many_sizes_with_exact_ties_need_no_second_drop() {
+    // Twenty sizes in turn: a disk often falls exactly onto the middle of an equal one.
+    let radii: Vec<f64> = (0..500).map(|k| 0.5 / f64::from(1 + k * 7 % 20)).collect();
+    for seed in (0..50).chain([1133, 3283, 3643]) {
+        for sides in [Sides::Walls, Sides::Periodic] {
+            assert_eq!(ballistic(&radii, 10.0, sides, seed).unwrap().repeated, 0, "seed {seed}");
         }
     }
 }

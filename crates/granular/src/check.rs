@@ -1,0 +1,196 @@
+//! What is known before the first step: limits, memory, time, and what was left out.
+
+use crate::failure::Failure;
+use crate::model::{self, Model};
+use crate::progress::duration;
+use crate::scene::{End, Scene};
+use crate::scene_file::{SceneProblem, SceneText};
+use granular_core::{Limits, Memory, StepRule};
+use serde_json::{Value, json};
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// Wall time spent on measuring the speed of a scene.
+const PROBE: Duration = Duration::from_millis(300);
+
+/// Report of a check.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Name of the scene file.
+    pub scene: String,
+    /// Number and name of what a step works on.
+    pub size: (usize, &'static str),
+    /// Name of the solver.
+    pub solver: &'static str,
+    /// Limits and bounds.
+    pub limits: Limits,
+    /// Steps of the stages \[s\], with their names and longest durations \[s\].
+    pub stages: Vec<(String, f64, f64)>,
+    /// Memory.
+    pub memory: Memory,
+    /// Longest run time with the present number of threads \[s\], from a measured burst of steps.
+    pub estimated_seconds: f64,
+    /// Reasons to refuse the run.
+    pub problems: Vec<String>,
+}
+
+/// Reads and builds a scene; problems know their place in the text.
+///
+/// # Errors
+/// With all problems of the scene.
+pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
+    let scene: Scene = text.parse()?;
+    let located = |problem: SceneProblem| problem.located_in(text);
+    let model =
+        model::build(&scene).map_err(|list| Failure::Scene(list.into_iter().map(located).collect()))?;
+    Ok((scene, model))
+}
+
+/// The step of each stage: its own, that of the solver, or the recommended one \[s\].
+pub(crate) fn steps(scene: &Scene, model: &Model, limits: &Limits) -> Vec<f64> {
+    let recommended = limits.recommended().map_or(1e-3, |limit| limit.dt);
+    let default = model.time_step.unwrap_or(recommended);
+    scene.stages.iter().map(|stage| stage.time_step.map_or(default, |step| step.value())).collect()
+}
+
+/// Limits of a model and the reasons to refuse it.
+pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<String>) {
+    let mut limits = Limits::default();
+    model.simulation.solver().limits(&mut limits);
+    let steps = steps(scene, model, &limits);
+    let mut problems = Vec::new();
+    if let Some(largest) = limits.largest_allowed() {
+        for (stage, &dt) in scene.stages.iter().zip(&steps) {
+            if dt > largest.dt {
+                problems.push(format!(
+                    "the step of stage `{}`, {dt:.4e} s, is above the limit of {} {:.4e} s ({}); leave out \
+                     `time_step` or set it below",
+                    stage.name, largest.name, largest.dt, largest.why
+                ));
+            }
+        }
+    }
+    for bound in limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds()) {
+        problems.push(format!(
+            "{} is {:.4} {} where {} is allowed: {}",
+            bound.name, bound.value, bound.unit, bound.allowed, bound.why
+        ));
+    }
+    (limits, steps, problems)
+}
+
+/// Checks a scene and measures its speed on a few steps.
+///
+/// # Errors
+/// When the scene is wrong. A scene that would be refused gives a report with problems.
+pub fn check(text: &SceneText) -> Result<Report, Failure> {
+    let (scene, mut model) = read(text)?;
+    let (limits, steps, problems) = limits_of(&scene, &model);
+    let memory = model.simulation.solver().memory();
+    let stages: Vec<(String, f64, f64)> = scene
+        .stages
+        .iter()
+        .zip(&steps)
+        .map(|(stage, &dt)| {
+            let longest = match stage.end {
+                End::For(time) => time.value(),
+                End::Quiet { within, .. } => within.value(),
+            };
+            (stage.name.clone(), dt, longest)
+        })
+        .collect();
+    let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
+    let estimated_seconds = if problems.is_empty() { count * seconds_per_step(&mut model, steps[0]) } else { f64::NAN };
+    Ok(Report {
+        scene: text.name().to_owned(),
+        size: model.simulation.solver().size(),
+        solver: model.simulation.solver().name(),
+        limits,
+        stages,
+        memory,
+        estimated_seconds,
+        problems,
+    })
+}
+
+/// Wall time of one step, measured.
+fn seconds_per_step(model: &mut Model, dt: f64) -> f64 {
+    let begun = Instant::now();
+    let mut steps = 0;
+    while begun.elapsed() < PROBE {
+        if model.simulation.solver_mut().advance(dt, 20).is_err() {
+            return f64::NAN;
+        }
+        steps += 20;
+    }
+    begun.elapsed().as_secs_f64() / f64::from(steps)
+}
+
+impl Report {
+    /// The report as JSON.
+    pub fn to_json(&self) -> Value {
+        let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);
+        let steps = self.limits.steps.iter().map(|limit| {
+            json!({ "name": limit.name, "value": chosen, "bound": limit.dt, "unit": "s",
+                "binds": (chosen - limit.dt).abs() <= 1e-12 * limit.dt, "why": limit.why })
+        });
+        let bounds = self.limits.bounds.iter().map(|bound| {
+            json!({ "name": bound.name, "value": bound.value, "bound": bound.allowed, "unit": bound.unit,
+                "binds": !bound.holds(), "why": bound.why })
+        });
+        json!({
+            "scene": self.scene,
+            "solver": self.solver,
+            "size": self.size.0,
+            "limits": steps.chain(bounds).collect::<Vec<_>>(),
+            "memory_bytes": self.memory.bytes,
+            "bytes_per_item": self.memory.bytes_per_item,
+            "estimated_seconds": self.estimated_seconds,
+            "left_out": self.memory.left_out,
+            "problems": self.problems,
+        })
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (count, item) = self.size;
+        writeln!(f, "{}: {count} {item}s, solver {}", self.scene, self.solver)?;
+        writeln!(f, "\nstages")?;
+        for (name, dt, longest) in &self.stages {
+            writeln!(f, "  {name:<24} at most {longest} s in steps of {dt:.4e} s: {:.0} steps", (longest / dt).ceil())?;
+        }
+        writeln!(f, "\nlimits on the step")?;
+        let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);
+        for limit in &self.limits.steps {
+            let binds = (chosen - limit.dt).abs() <= 1e-12 * limit.dt;
+            let remark = match limit.rule {
+                _ if binds => "binds".to_owned(),
+                StepRule::Recommended => format!("chosen step is {:.2} of it", chosen / limit.dt),
+                _ => format!("safety factor {:.1}", limit.dt / chosen),
+            };
+            writeln!(f, "  {:<24} {:.4e} s  {remark}  ({})", limit.name, limit.dt, limit.why)?;
+        }
+        writeln!(f, "\nbounds")?;
+        for bound in &self.limits.bounds {
+            let verdict = if bound.holds() { "holds" } else { "BROKEN" };
+            writeln!(
+                f,
+                "  {:<32} {:>8.3} of {} {}  {verdict}  ({})",
+                bound.name, bound.value, bound.allowed, bound.unit, bound.why
+            )?;
+        }
+        let megabytes = self.memory.bytes as f64 / 1e6;
+        writeln!(f, "\nmemory    {megabytes:.2} MB, {} bytes per {item}", self.memory.bytes_per_item)?;
+        let threads = rayon::current_num_threads();
+        writeln!(f, "run time  at most {} on {threads} threads (measured)", duration(self.estimated_seconds))?;
+        writeln!(f, "\nleft out")?;
+        for left_out in &self.memory.left_out {
+            writeln!(f, "  {left_out}")?;
+        }
+        for problem in &self.problems {
+            writeln!(f, "\nrefused: {problem}")?;
+        }
+        if self.problems.is_empty() { writeln!(f, "\nthe scene can be run") } else { Ok(()) }
+    }
+}

@@ -1,0 +1,281 @@
+//! Verbs and flags.
+
+use clap::{Args, Parser, Subcommand};
+use granular::failure::Failure;
+use granular::run::Interrupt;
+use granular::scene_file::SceneText;
+use granular::{check, folder, run};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Granular flows from one scene file.
+///
+/// Exit codes: 0 done, 1 a validation failed, 2 the scene is wrong, 3 refused by the stability
+/// check, 4 stopped by a guard (state saved), 5 input or output, 130 or 143 interrupted
+/// (resumable).
+#[derive(Parser, Debug)]
+#[command(name = "granular", version, about)]
+pub(crate) struct Command {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Args, Debug)]
+struct Common {
+    /// Threads; all cores by default. The results are the same bits for any number.
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<usize>,
+    /// Print one JSON value on standard output.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Say nothing but results and errors.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand, Debug)]
+enum Verb {
+    /// Print a scene to start from.
+    New {
+        /// Name of the template; all names by default.
+        template: Option<String>,
+    },
+    /// Check a scene: limits, bounds, memory, run time, and what is left out. Runs nothing.
+    Check {
+        /// Scene file, or - for standard input.
+        scene: PathBuf,
+        #[command(flatten)]
+        edits: Edits,
+    },
+    /// Run a scene in a new folder.
+    Run {
+        /// Scene file, or - for standard input.
+        scene: PathBuf,
+        #[command(flatten)]
+        edits: Edits,
+        /// Run folder; `runs/<name of the scene>` by default.
+        #[arg(short, long, value_name = "FOLDER")]
+        out: Option<PathBuf>,
+        /// Replace the run that the folder holds.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Take an interrupted run up again, to the same bits as if it had not been interrupted.
+    Resume {
+        /// Run folder.
+        folder: PathBuf,
+    },
+    /// Draw the figures of a run again.
+    Plot {
+        /// Run folder.
+        folder: PathBuf,
+    },
+    /// Tell about this program, a run folder, or all that a scene can show.
+    Info {
+        /// Run folder or scene file.
+        path: Option<PathBuf>,
+    },
+}
+
+#[derive(Args, Debug)]
+struct Edits {
+    /// Change a value of the scene, such as `sample.aspect_ratio=2` or `materials.glass.friction=0.3`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+impl Command {
+    /// Runs the verb and prints what came of it.
+    pub(crate) fn execute(self) -> ExitCode {
+        let threads = self.common.threads.unwrap_or(0);
+        // The global pool is built once, here, before anything runs in it.
+        if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
+            eprintln!("warning: {error}; the default number of threads is used");
+        }
+        match self.verb.execute(&self.common) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => {
+                if self.common.json {
+                    println!("{}", pretty(&failure_json(&failure)));
+                }
+                eprintln!("{failure}");
+                ExitCode::from(failure.code())
+            }
+        }
+    }
+}
+
+impl Verb {
+    fn execute(self, common: &Common) -> Result<(), Failure> {
+        match self {
+            Self::New { template } => new(template.as_deref()),
+            Self::Check { scene, edits } => {
+                let report = check::check(&read(&scene, &edits)?)?;
+                show(common, &report.to_json(), || report.to_string());
+                if report.problems.is_empty() { Ok(()) } else { Err(Failure::Refused(report.problems)) }
+            }
+            Self::Run { scene, edits, out, force } => {
+                let text = read(&scene, &edits)?;
+                let out = out.unwrap_or_else(|| default_folder(&scene));
+                let facts = run::run(&text, &out, force, common.quiet, &interrupt()?)?;
+                show(common, &result(&facts), || summary(&facts, &out));
+                Ok(())
+            }
+            Self::Resume { folder } => {
+                let facts = run::resume(&folder, common.quiet, &interrupt()?)?;
+                show(common, &result(&facts), || summary(&facts, &folder));
+                Ok(())
+            }
+            Self::Plot { folder } => {
+                let paths = run::plot(&folder)?;
+                let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+                show(common, &json!(lines), || lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect());
+                Ok(())
+            }
+            Self::Info { path } => info(common, path.as_deref()),
+        }
+    }
+}
+
+fn read(path: &Path, edits: &Edits) -> Result<SceneText, Failure> {
+    let mut text = SceneText::read(path)?;
+    for assignment in &edits.set {
+        text.set(assignment)?;
+    }
+    Ok(text)
+}
+
+/// `runs/<folder of the scene>` for a file called `scene.ron`, else `runs/<name of the file>`.
+fn default_folder(scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let parent = scene.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let name = match (stem.as_str(), parent) {
+        ("scene", Some(parent)) => parent,
+        ("-", _) | ("", _) => "scene".to_owned(),
+        _ => stem,
+    };
+    Path::new("runs").join(name)
+}
+
+/// Raises a flag on SIGINT and SIGTERM.
+fn interrupt() -> Result<Interrupt, Failure> {
+    let interrupt = Interrupt::default();
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        let number = interrupt.signal.clone();
+        let flag = interrupt.raised.clone();
+        let register = signal_hook::flag::register(signal, flag)
+            .and_then(|_| signal_hook::flag::register_usize(signal, number, signal as usize));
+        register.map_err(|error| Failure::io("signals", error))?;
+    }
+    Ok(interrupt)
+}
+
+fn show(common: &Common, value: &Value, text: impl FnOnce() -> String) {
+    if common.json {
+        println!("{}", pretty(value));
+    } else {
+        print!("{}", text());
+    }
+}
+
+fn pretty(value: &Value) -> String {
+    serde_json::to_string_pretty(value).expect("a JSON value can be written")
+}
+
+/// The keys of `run --json`.
+fn result(facts: &Value) -> Value {
+    let keys = [
+        "scene",
+        "solver",
+        "exit",
+        "simulated_seconds",
+        "steps",
+        "wall_seconds",
+        "rate",
+        "state_hash",
+        "metrics",
+    ];
+    keys.iter().map(|&key| (key.to_owned(), facts[key].clone())).collect::<serde_json::Map<_, _>>().into()
+}
+
+fn failure_json(failure: &Failure) -> Value {
+    let problems = match failure {
+        Failure::Scene(problems) => json!(problems),
+        Failure::Refused(reasons) => json!(reasons),
+        other => json!([other.to_string()]),
+    };
+    json!({ "exit": failure.code(), "problems": problems })
+}
+
+fn summary(facts: &Value, folder: &Path) -> String {
+    let number = |key: &str| facts[key].as_f64().unwrap_or(f64::NAN);
+    let mut text = format!(
+        "done: {:.6} s in {} steps and {:.1} s of wall time ({:.2e} grain-steps/s)\n",
+        number("simulated_seconds"),
+        facts["steps"],
+        number("wall_seconds"),
+        number("rate"),
+    );
+    if let Some(metrics) = facts["metrics"].as_object() {
+        for (name, value) in metrics {
+            text += &format!("  {:<26} {:.6}\n", name.replace('_', " "), value.as_f64().unwrap_or(f64::NAN));
+        }
+    }
+    text + &format!(
+        "  {:<26} {}\n  {:<26} {}\n",
+        "state hash",
+        facts["state_hash"].as_str().unwrap_or(""),
+        "run folder",
+        folder.display()
+    )
+}
+
+fn new(template: Option<&str>) -> Result<(), Failure> {
+    let templates = granular::TEMPLATES;
+    let Some(name) = template else {
+        for (name, text) in templates {
+            let title = text.lines().next().unwrap_or_default().trim_start_matches("// ");
+            println!("{name:<24} {title}");
+        }
+        return Ok(());
+    };
+    match templates.iter().find(|(known, _)| *known == name) {
+        Some((_, text)) => {
+            print!("{text}");
+            Ok(())
+        }
+        None => {
+            let known: Vec<&str> = templates.iter().map(|(name, _)| *name).collect();
+            Err(Failure::Io(format!("there is no template `{name}`; known: {}", known.join(", "))))
+        }
+    }
+}
+
+fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
+    let facts = match path {
+        None => folder::provenance(),
+        Some(path) if path.is_dir() => folder::RunFolder::open(path)?.facts()?,
+        Some(path) => return shown(common, path),
+    };
+    show(common, &facts, || pretty(&facts) + "\n");
+    Ok(())
+}
+
+/// Lists all that a scene can show.
+fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
+    let (_, model) = check::read(&SceneText::read(path)?)?;
+    let list = model.simulation.solver().shown();
+    let rows: Vec<Value> = list
+        .iter()
+        .map(|s| json!({ "name": s.name, "unit": s.unit, "kind": format!("{:?}", s.kind), "meaning": s.meaning }))
+        .collect();
+    show(common, &json!(rows), || {
+        list.iter()
+            .map(|s| format!("{:<8} {:<28} {:<8} {}\n", format!("{:?}", s.kind), s.name, s.unit, s.meaning))
+            .collect()
+    });
+    Ok(())
+}

@@ -1,0 +1,159 @@
+//! Figures and metrics of a run, made from the files of its folder.
+
+mod column;
+mod flow;
+
+use crate::failure::Failure;
+use crate::folder::RunFolder;
+use crate::model::ColumnSize;
+use crate::observers::number_of;
+use crate::run::StageRecord;
+use crate::scene::{FigureSpec, Scene};
+use granular_core::Simulation;
+use granular_io::figure::{Axis, Chart, Series, Style};
+use granular_io::{Table, read_table};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+/// Lengths and times that a figure is drawn in.
+#[derive(Clone, Copy, Debug)]
+struct Units {
+    /// Simulated time from which the figure counts \[s\].
+    start: f64,
+    /// Time of the axis \[s\]: sqrt(H/g) of a column, else one second.
+    time: f64,
+    /// Whether `time` is sqrt(H/g).
+    scaled: bool,
+}
+
+/// Draws all figures of a scene. Returns their paths without ending.
+///
+/// # Errors
+/// When a file of the run cannot be read, or a figure cannot be written.
+pub fn draw(
+    scene: &Scene,
+    folder: &RunFolder,
+    records: &[StageRecord],
+    column: Option<ColumnSize>,
+) -> Result<Vec<PathBuf>, Failure> {
+    let mut paths = Vec::new();
+    for spec in &scene.figures {
+        let path = folder.path().join(spec.path());
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
+        }
+        let figure = match spec {
+            FigureSpec::Series { table, columns, .. } => series(scene, &table_of(folder, table)?, columns).figure(),
+            FigureSpec::Runout { table, stage, .. } => {
+                column::runout(scene, &table_of(folder, table)?, record(records, stage)?, column).figure()
+            }
+            FigureSpec::Energies { table, stage, .. } => {
+                let units = units(scene, record(records, stage)?, column);
+                column::energies(scene, &table_of(folder, table)?, units).figure()
+            }
+            FigureSpec::Flow { fields, color, stage, times, .. } => {
+                let units = units(scene, record(records, stage)?, column);
+                flow::grains(scene, folder, (fields.as_str(), color.as_str()), times, units)?.figure()
+            }
+            FigureSpec::ForceChains { contacts, stage, time, .. } => {
+                let units = units(scene, record(records, stage)?, column);
+                flow::chains(scene, folder, contacts, *time, units)?.figure()
+            }
+        };
+        figure.save(&path)?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// What the run measured, by name.
+pub(crate) fn metrics(
+    scene: &Scene,
+    simulation: &Simulation,
+    records: &[StageRecord],
+    column: Option<ColumnSize>,
+) -> Value {
+    let mut metrics = Map::new();
+    let mut add = |name: &str, value: Option<f64>| {
+        if let Some(value) = value {
+            metrics.insert(name.to_owned(), json!(value));
+        }
+    };
+    for name in ["front", "height", "largest_overlap", "unconnected"] {
+        add(name, number_of(simulation, name));
+    }
+    if let (Some(column), Some(release)) = (column, release_of(scene, records)) {
+        add("aspect_ratio", Some(release.height / column.width));
+        add("runout", number_of(simulation, "front").map(|front| (front - column.width) / column.width));
+        add("final_height_over_width", number_of(simulation, "height").map(|height| height / column.width));
+        add("duration_unit", gravity_time(scene, release.height));
+    }
+    let residual = number_of(simulation, "energy_residual").filter(|residual| residual.is_finite());
+    add("energy_residual", residual);
+    Value::Object(metrics)
+}
+
+/// The stage at whose start a gate opens, or the last one.
+pub(crate) fn release_of<'a>(scene: &Scene, records: &'a [StageRecord]) -> Option<&'a StageRecord> {
+    let opens = scene.walls.iter().find_map(|wall| match wall {
+        crate::scene::WallSpec::Gate { opens, .. } => Some(opens),
+        _ => None,
+    });
+    match opens {
+        Some(stage) => records.iter().find(|record| record.name == *stage),
+        None => records.last(),
+    }
+}
+
+/// sqrt(H/g) \[s\].
+fn gravity_time(scene: &Scene, height: f64) -> Option<f64> {
+    let gravity = scene.gravity.iter().map(|g| g.value() * g.value()).sum::<f64>().sqrt();
+    (gravity > 0.0 && height > 0.0).then(|| (height / gravity).sqrt())
+}
+
+fn units(scene: &Scene, record: &StageRecord, column: Option<ColumnSize>) -> Units {
+    let time = column.and_then(|_| gravity_time(scene, record.height));
+    Units { start: record.start, time: time.unwrap_or(1.0), scaled: time.is_some() }
+}
+
+impl Units {
+    fn time_label(&self) -> &'static str {
+        if self.scaled { "time after release, t / √(H₀/g) [-]" } else { "time [s]" }
+    }
+
+    fn name_of(&self, time: f64) -> String {
+        if self.scaled { format!("t = {time} √(H₀/g)") } else { format!("t = {time} s") }
+    }
+}
+
+fn record<'a>(records: &'a [StageRecord], name: &str) -> Result<&'a StageRecord, Failure> {
+    let found = records.iter().find(|record| record.name == name);
+    found.ok_or_else(|| Failure::Io(format!("stage `{name}` was not run yet, so there is no figure of it")))
+}
+
+fn table_of(folder: &RunFolder, name: &str) -> Result<Table, Failure> {
+    Ok(read_table(&folder.path().join(name))?)
+}
+
+fn title(scene: &Scene, what: &str) -> String {
+    if scene.title.is_empty() { what.to_owned() } else { format!("{}: {what}", scene.title) }
+}
+
+/// Columns of a table over time.
+fn series(scene: &Scene, table: &Table, columns: &[String]) -> Chart {
+    let unit = columns.first().and_then(|name| table.unit(name)).unwrap_or("-");
+    let label = match columns {
+        [one] => format!("{} [{unit}]", one.replace('_', " ")),
+        _ => format!("[{unit}]"),
+    };
+    let heading = if scene.title.is_empty() { "Series over time" } else { &scene.title };
+    let mut chart = Chart::new(heading, Axis::linear("time [s]"), Axis::linear(label));
+    let time = table.column("time").unwrap_or_default();
+    for name in columns {
+        let values = table.column(name).unwrap_or_default();
+        let points = time.iter().zip(values).map(|(&t, value)| [t, value]).collect();
+        let label = if columns.len() > 1 { name.replace('_', " ") } else { String::new() };
+        chart = chart.with(Series::new(label, points, Style::Line));
+    }
+    chart
+}

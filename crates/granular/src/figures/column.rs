@@ -1,0 +1,72 @@
+//! Figures of a collapsing column: run-out and height, and where the energy goes.
+
+use super::{Units, title};
+use crate::model::ColumnSize;
+use crate::run::StageRecord;
+use crate::scene::Scene;
+use granular_io::Table;
+use granular_io::figure::{Axis, Chart, Panels, Series, Style};
+
+/// Run-out and height over time, as figures 4.8 to 4.12 of \[Kumar2014\] draw them.
+pub(super) fn runout(
+    scene: &Scene,
+    table: &Table,
+    release: &StageRecord,
+    column: Option<ColumnSize>,
+) -> Panels {
+    let units = super::units(scene, release, column);
+    let width = column.map_or(release.front, |column| column.width);
+    let over_time = |name: &str, map: &dyn Fn(f64) -> f64| {
+        let values = table.column(name).unwrap_or_default();
+        let time = table.column("time").unwrap_or_default();
+        let pairs = time.into_iter().zip(values).filter(|(t, _)| *t >= units.start);
+        pairs.map(|(t, value)| [(t - units.start) / units.time, map(value)]).collect::<Vec<_>>()
+    };
+    let run_out = over_time("front", &|front| (front - width) / width);
+    let height = over_time("height", &|height| height / width);
+    let last = |points: &[[f64; 2]]| points.last().map_or(f64::NAN, |point| point[1]);
+    let charts = vec![
+        Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear("(L − L₀) / L₀ [-]"))
+            .note(format!("a = {:.2}; final run-out {:.3}", release.height / width, last(&run_out)))
+            .with(Series::new("", run_out, Style::Line)),
+        Chart::new("Height", Axis::linear(units.time_label()), Axis::linear("H / L₀ [-]"))
+            .note(format!("final height {:.3} L₀", last(&height)))
+            .with(Series::new("", height, Style::Line).colour(1)),
+    ];
+    Panels::new(title(scene, "run-out and height"), 2, charts)
+}
+
+/// Energies over the energy at the start, as figure 4.14 of \[Kumar2014\] draws them.
+pub(super) fn energies(scene: &Scene, table: &Table, units: Units) -> Chart {
+    let time = table.column("time").unwrap_or_default();
+    let column = |name: &str| table.column(name).unwrap_or_else(|| vec![f64::NAN; time.len()]);
+    let first = time.iter().position(|&t| t >= units.start - 1e-12).unwrap_or(0);
+    let potential = column("potential_energy");
+    let scale = potential.get(first).copied().unwrap_or(1.0);
+    let mut chart = Chart::new(
+        title(scene, "where the energy goes"),
+        Axis::linear(units.time_label()),
+        Axis::linear("energy over the potential energy at the start [-]"),
+    );
+    // Losses count from the start of the stage; energies are absolute.
+    let curves: [(&str, &[&str], bool); 6] = [
+        ("potential", &["potential_energy"], false),
+        ("kinetic", &["kinetic_energy", "rotational_energy"], false),
+        ("lost by sliding between grains", &["loss_sliding"], true),
+        ("lost by sliding at walls", &["loss_sliding_at_walls"], true),
+        ("lost in dashpots", &["loss_normal_damping", "loss_tangential_damping"], true),
+        ("missing in the balance", &["energy_residual"], true),
+    ];
+    for (label, names, from_start) in curves {
+        let mut sum = vec![0.0; time.len()];
+        for name in names {
+            sum.iter_mut().zip(column(name)).for_each(|(sum, value)| *sum += value);
+        }
+        let offset = if from_start { sum.get(first).copied().unwrap_or(0.0) } else { 0.0 };
+        let points = time.iter().zip(&sum).skip(first);
+        let points = points.map(|(t, value)| [(t - units.start) / units.time, (value - offset) / scale]);
+        let style = if label.starts_with("missing") { Style::Dashed } else { Style::Line };
+        chart = chart.with(Series::new(label, points.collect(), style));
+    }
+    chart
+}

@@ -1,0 +1,216 @@
+//! Grains of a scene.
+
+use super::{ColumnSize, NamedMaterials, Problems};
+use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
+use granular_core::{Dim, Linear, Spin, Vector};
+use granular_dem::spec::GrainSpec;
+use granular_dem::{Grain, MaterialId};
+use granular_packing::{Grading, Lattice, Sides, ballistic, loose_lattice};
+
+/// Solid fraction that a deposit comes to rest at, to estimate sizes: plane and space.
+const SETTLED: [f64; 2] = [0.83, 0.60];
+/// Gap between grains of a loose lattice over the largest diameter.
+const LOOSE_GAP: f64 = 0.1;
+/// More grains than this are a slip of the pen.
+const MOST_GRAINS: f64 = 1e8;
+
+/// The grains and, for a column, its size.
+pub(crate) struct BuiltSample<D: Dim> {
+    pub(crate) grains: Vec<Grain<D>>,
+    pub(crate) column: Option<ColumnSize>,
+}
+
+pub(crate) fn grains<D: Dim>(
+    sample: &Sample,
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Option<BuiltSample<D>> {
+    match sample {
+        Sample::Column { material, .. } => {
+            let material = materials.find("sample.material", material, problems);
+            let column = Column::of::<D>(sample, problems)?;
+            column.build(material?, problems)
+        }
+        Sample::Grains(list) => {
+            if list.is_empty() {
+                problems.add("sample", "empty", "at least one grain", "");
+            }
+            let grains: Vec<Option<Grain<D>>> =
+                list.iter().enumerate().map(|(k, spec)| grain(k, spec, materials, problems)).collect();
+            let grains = grains.into_iter().collect::<Option<Vec<_>>>()?;
+            Some(BuiltSample { grains, column: None })
+        }
+    }
+}
+
+fn grain<D: Dim>(
+    index: usize,
+    spec: &GrainSpec,
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Option<Grain<D>> {
+    let path = format!("sample.{index}");
+    let material = materials.find(&format!("{path}.material"), &spec.material, problems);
+    let position = problems.vector::<D, _>(&format!("{path}.position"), &spec.position);
+    let velocity = if spec.velocity.is_empty() {
+        Some(D::Vec::ZERO)
+    } else {
+        problems.vector::<D, _>(&format!("{path}.velocity"), &spec.velocity)
+    };
+    let spin: Vec<f64> = spec.spin.iter().map(|value| value.value()).collect();
+    let spin = match (D::N, spin.as_slice()) {
+        (_, []) => D::Spin::ZERO,
+        (2, [z]) => D::Spin::about_z(*z),
+        (3, [x, y, z]) => D::Spin::of_components([*x, *y, *z]),
+        _ => {
+            let allowed = if D::N == 2 { "one value, about z" } else { "three values" };
+            problems.add(format!("{path}.spin"), format!("a list of {}", spin.len()), allowed, "");
+            return None;
+        }
+    };
+    if spec.radius.value() <= 0.0 {
+        problems.add(format!("{path}.radius"), spec.radius, "a positive length", "");
+        return None;
+    }
+    Some(Grain::at(position?, spec.radius.value(), material?).moving(velocity?).turning(spin))
+}
+
+/// A column before its grains are placed.
+struct Column<'a> {
+    extent: Extent,
+    aspect_ratio: f64,
+    depth_ratio: Option<f64>,
+    grading: &'a GradingSpec,
+    packing: PackingSpec,
+    seed: u64,
+}
+
+impl<'a> Column<'a> {
+    fn of<D: Dim>(sample: &'a Sample, problems: &mut Problems) -> Option<Self> {
+        let Sample::Column { extent, aspect_ratio, depth_ratio, grading, packing, seed, .. } = sample else {
+            return None;
+        };
+        let before = problems.0.len();
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        if !positive(*aspect_ratio) {
+            problems.add("sample.aspect_ratio", aspect_ratio, "a positive number", "");
+        }
+        match (D::N, depth_ratio) {
+            (2, Some(ratio)) => problems.add("sample.depth_ratio", ratio, "nothing: the scene is plane", ""),
+            (3, None) => problems.add("sample.depth_ratio", "missing", "a positive number", ""),
+            (_, Some(ratio)) if !positive(*ratio) => {
+                problems.add("sample.depth_ratio", ratio, "a positive number", "");
+            }
+            _ => {}
+        }
+        match extent {
+            Extent::Grains(0) => problems.add("sample.extent", "a column of 0 grains", "at least one grain", ""),
+            Extent::Width(width) if width.value() <= 0.0 => {
+                problems.add("sample.extent", width, "a positive length", "");
+            }
+            _ => {}
+        }
+        if *packing == PackingSpec::Ballistic && D::N == 3 {
+            problems.add("sample.packing", "Ballistic", "Loose or Hexagonal in space", "");
+        }
+        if *packing == PackingSpec::Hexagonal && !matches!(grading, GradingSpec::Single(_)) {
+            problems.add("sample.packing", "Hexagonal", "a grading of one size: Single(\"1 mm\")", "");
+        }
+        if let Err(error) = grading_of(grading).check() {
+            problems.add("sample.grading", error.to_string(), error.allowed, "");
+        }
+        let column = Self {
+            extent: *extent,
+            aspect_ratio: *aspect_ratio,
+            depth_ratio: *depth_ratio,
+            grading,
+            packing: *packing,
+            seed: *seed,
+        };
+        (problems.0.len() == before).then_some(column)
+    }
+
+    fn build<D: Dim>(&self, material: MaterialId, problems: &mut Problems) -> Option<BuiltSample<D>> {
+        match self.place::<D>(problems) {
+            Ok((radii, positions, column)) => {
+                let pairs = positions.into_iter().zip(radii);
+                let grains = pairs.map(|(position, radius)| Grain::at(position, radius, material)).collect();
+                Some(BuiltSample { grains, column: Some(column) })
+            }
+            Err(reason) => {
+                problems.add("sample", reason, "a column that can be filled", "");
+                None
+            }
+        }
+    }
+
+    /// Radii, places and the size of the column.
+    #[allow(clippy::type_complexity)]
+    fn place<D: Dim>(
+        &self,
+        problems: &mut Problems,
+    ) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), String> {
+        let grading = grading_of(self.grading);
+        let solid = if self.packing == PackingSpec::Hexagonal {
+            Lattice::Hexagonal.density::<D>()
+        } else {
+            SETTLED[D::N - 2]
+        };
+        let depth_ratio = self.depth_ratio.unwrap_or(1.0);
+        // Volume of the column over the width to the power of the dimension.
+        let shape = self.aspect_ratio * if D::N == 3 { depth_ratio } else { 1.0 };
+        let count = match self.extent {
+            Extent::Grains(count) => count as f64,
+            Extent::Width(width) => {
+                let probe = grading.sample::<D>(1000, self.seed).map_err(|error| error.to_string())?;
+                let mean = probe.iter().map(|&r| D::ball_volume(r)).sum::<f64>() / probe.len() as f64;
+                (solid * shape * width.value().powi(D::N as i32) / mean).round().max(1.0)
+            }
+        };
+        if count > MOST_GRAINS {
+            problems.add("sample.extent", format!("a column of {count:.0} grains"), "at most 1e8 grains", "");
+            return Err(format!("a column of {count:.0} grains"));
+        }
+        let radii = grading.sample::<D>(count as usize, self.seed).map_err(|error| error.to_string())?;
+        let volume: f64 = radii.iter().map(|&radius| D::ball_volume(radius)).sum();
+        let width = match self.extent {
+            Extent::Width(width) => width.value(),
+            Extent::Grains(_) => (volume / (solid * shape)).powf(1.0 / D::N as f64),
+        };
+        let depth = (D::N == 3).then_some(depth_ratio * width);
+        let size = ColumnSize { width, height: self.aspect_ratio * width, depth };
+        let positions = self.positions::<D>(&radii, size)?;
+        // A lattice has its own number of sites.
+        let radii = if positions.len() == radii.len() { radii } else { vec![radii[0]; positions.len()] };
+        Ok((radii, positions, size))
+    }
+
+    fn positions<D: Dim>(&self, radii: &[f64], size: ColumnSize) -> Result<Vec<D::Vec>, String> {
+        match self.packing {
+            PackingSpec::Ballistic => {
+                let deposit = ballistic(radii, size.width, Sides::Walls, self.seed).map_err(|e| e.to_string())?;
+                let of_plane = |p: &granular_core::glam::DVec2| {
+                    D::Vec::along(0, p.x) + D::Vec::along(1, p.y)
+                };
+                Ok(deposit.positions.iter().map(of_plane).collect())
+            }
+            PackingSpec::Hexagonal => {
+                let depth = size.depth.map_or(D::Vec::ZERO, |depth| D::Vec::along(1, depth));
+                let high = D::Vec::along(0, size.width) + depth + D::Vec::along(D::UP, size.height);
+                Lattice::Hexagonal.fill::<D>(radii[0], D::Vec::ZERO, high).map_err(|e| e.to_string())
+            }
+            PackingSpec::Loose => {
+                let base: Vec<f64> = std::iter::once(size.width).chain(size.depth).collect();
+                loose_lattice::<D>(radii, D::Vec::ZERO, &base, LOOSE_GAP, self.seed).map_err(|e| e.to_string())
+            }
+        }
+    }
+}
+
+fn grading_of(spec: &GradingSpec) -> Grading {
+    match *spec {
+        GradingSpec::Single(diameter) => Grading::Single { diameter: diameter.value() },
+        GradingSpec::Beta { min, max, a, b } => Grading::Beta { min: min.value(), max: max.value(), a, b },
+        GradingSpec::EqualMass { min, max } => Grading::EqualMass { min: min.value(), max: max.value() },
+    }
+}

@@ -1,0 +1,227 @@
+//! Observers of a run: tables, files of fields, rest, and the timer of snapshots.
+
+use crate::failure::Failure;
+use crate::scene::{EverySpec, Output, Writer};
+use granular_core::{
+    Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, Shown, ShownAs, Simulation,
+    SnapshotError,
+};
+use granular_io::{Collection, Frame, TableWriter, write_fields, write_links_vtp};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Makes the observer of an output. On a fresh start its file is created; a resumed run reopens
+/// it when its state is restored.
+pub(crate) fn of_output(output: &Output, folder: &Path, shown: &[Shown], fresh: bool) -> Result<Scheduled, Failure> {
+    let every = match output.every {
+        EverySpec::Time(time) => Every::Time(time.value()),
+        EverySpec::Steps(steps) => Every::Steps(steps),
+    };
+    let path = folder.join(output.write.path());
+    if let Some(parent) = path.parent() {
+        std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
+    }
+    let observer: Box<dyn Observer> = match &output.write {
+        Writer::Table { probes, .. } => Box::new(TableObserver::new(path, probes, shown, fresh)?),
+        Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, fields, false, fresh)?),
+        Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, fields, true, fresh)?),
+        #[cfg(feature = "hdf5")]
+        Writer::Hdf5 { fields, .. } => Box::new(hdf5::Hdf5Observer::new(&path, fields, fresh)?),
+        #[cfg(not(feature = "hdf5"))]
+        Writer::Hdf5 { path, .. } => {
+            let reason = "this program was built without the cargo feature `hdf5`; use Fields instead";
+            return Err(Failure::Scene(vec![crate::scene_file::SceneProblem::of_file(path.clone(), reason)]));
+        }
+    };
+    Ok(Scheduled::new(format!("output {}", output.write.path()), every, observer))
+}
+
+/// One row of numbers per look.
+struct TableObserver {
+    path: PathBuf,
+    columns: Vec<(String, String)>,
+    probes: Vec<String>,
+    writer: Option<TableWriter>,
+    last_step: Option<u64>,
+}
+
+impl TableObserver {
+    fn new(path: PathBuf, probes: &[String], shown: &[Shown], fresh: bool) -> Result<Self, Failure> {
+        let unit = |name: &str| {
+            let found = shown.iter().find(|s| s.kind == ShownAs::Number && s.name == name);
+            found.map_or("1", |shown| shown.unit).to_owned()
+        };
+        let mut columns = vec![("time".to_owned(), "s".to_owned())];
+        columns.extend(probes.iter().map(|name| (name.clone(), unit(name))));
+        let mut observer = Self { path, columns, probes: probes.to_vec(), writer: None, last_step: None };
+        if fresh {
+            observer.writer = Some(TableWriter::create(&observer.path, &observer.header())?);
+        }
+        Ok(observer)
+    }
+
+    fn header(&self) -> Vec<(&str, &str)> {
+        self.columns.iter().map(|(name, unit)| (name.as_str(), unit.as_str())).collect()
+    }
+}
+
+impl Observer for TableObserver {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let mut numbers = Numbers::wanting(self.probes.iter().map(String::as_str));
+        simulation.solver().show(&mut numbers);
+        let mut row = vec![simulation.clock().time()];
+        row.extend(self.probes.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
+        if let Some(writer) = &mut self.writer {
+            writer.row(&row)?;
+        }
+        self.last_step = Some(simulation.clock().step());
+        Ok(Flow::Continue)
+    }
+
+    fn finish(&mut self, simulation: &Simulation) -> Result<(), ObserverError> {
+        if self.last_step != Some(simulation.clock().step()) {
+            self.observe(simulation)?;
+        }
+        if let Some(writer) = &mut self.writer {
+            writer.sync()?;
+        }
+        Ok(())
+    }
+
+    fn save(&self, to: &mut Section) {
+        to.put_one("bytes", self.writer.as_ref().map_or(0, TableWriter::position));
+        to.put_one("last step", self.last_step.unwrap_or(u64::MAX));
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let bytes: u64 = from.one("bytes")?;
+        self.last_step = Some(from.one("last step")?).filter(|&step| step != u64::MAX);
+        self.writer = Some(TableWriter::reopen_at(&self.path, &self.header(), bytes)?);
+        Ok(())
+    }
+}
+
+/// One file per look, listed in a `.pvd`.
+struct FilesObserver {
+    stem: PathBuf,
+    names: Vec<String>,
+    links: bool,
+    collection: Option<Collection>,
+}
+
+impl FilesObserver {
+    fn new(stem: PathBuf, names: &[String], links: bool, fresh: bool) -> Result<Self, Failure> {
+        let collection = if fresh { Some(Collection::create(&stem.with_extension("pvd"))?) } else { None };
+        Ok(Self { stem, names: names.to_vec(), links, collection })
+    }
+}
+
+impl Observer for FilesObserver {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let Some(collection) = &mut self.collection else { return Ok(Flow::Continue) };
+        let mut frame = Frame::wanting(self.names.iter().map(String::as_str));
+        let solver = simulation.solver();
+        solver.show(&mut frame);
+        let (time, location) = (simulation.clock().time(), solver.location());
+        let name = self.stem.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let folder = self.stem.parent().unwrap_or(Path::new("."));
+        let numbered = format!("{name}_{:06}", collection.len());
+        let file = if self.links {
+            let file = folder.join(format!("{numbered}.vtp"));
+            write_links_vtp(&file, &location, &frame, time)?;
+            file
+        } else {
+            write_fields(folder, &numbered, &location, &frame, time)?
+        };
+        let entry = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        collection.push(time, &entry)?;
+        Ok(Flow::Continue)
+    }
+
+    fn save(&self, to: &mut Section) {
+        to.put_one("files", self.collection.as_ref().map_or(0, Collection::len) as u64);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let files: u64 = from.one("files")?;
+        self.collection = Some(Collection::reopen_at(&self.stem.with_extension("pvd"), files as usize)?);
+        Ok(())
+    }
+}
+
+/// Ends a stage when the grains have been at rest for a while.
+pub(crate) struct Rest {
+    threshold: f64,
+    /// Time that motion must stay below the threshold \[s\].
+    patience: f64,
+    loud: f64,
+    reached: Arc<AtomicBool>,
+}
+
+/// Share of the longest time of a stage during which grains must stay at rest.
+const PATIENCE: f64 = 0.05;
+/// Looks within the patience.
+const LOOKS: f64 = 20.0;
+
+impl Rest {
+    /// Watches from the start of a stage; raises the flag when it ends it.
+    pub(crate) fn scheduled(threshold: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
+        let patience = PATIENCE * within;
+        let rest = Self { threshold, patience, loud: 0.0, reached };
+        Scheduled::new("rest", Every::Time(patience / LOOKS), Box::new(rest))
+    }
+}
+
+impl Observer for Rest {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let mut numbers = Numbers::wanting(["kinetic_energy", "rotational_energy", "potential_energy"]);
+        simulation.solver().show(&mut numbers);
+        let get = |name| numbers.get(name).unwrap_or(0.0);
+        let moving = get("kinetic_energy") + get("rotational_energy");
+        let now = simulation.clock().time_in_segment();
+        if moving > self.threshold * get("potential_energy").abs() {
+            self.loud = now;
+        }
+        if now - self.loud < self.patience {
+            return Ok(Flow::Continue);
+        }
+        self.reached.store(true, Ordering::Relaxed);
+        Ok(Flow::Stop)
+    }
+
+    fn save(&self, to: &mut Section) {
+        to.put_one("loud", self.loud);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        self.loud = from.one("loud")?;
+        Ok(())
+    }
+}
+
+/// Stops the run loop when a snapshot is due; the loop takes it and goes on.
+pub(crate) struct SnapshotTimer {
+    due: Arc<AtomicBool>,
+}
+
+impl SnapshotTimer {
+    pub(crate) fn scheduled(interval: Duration, due: Arc<AtomicBool>) -> Scheduled {
+        Scheduled::new("snapshot timer", Every::Wall(interval), Box::new(Self { due }))
+    }
+}
+
+impl Observer for SnapshotTimer {
+    fn observe(&mut self, _: &Simulation) -> Result<Flow, ObserverError> {
+        self.due.store(true, Ordering::Relaxed);
+        Ok(Flow::Stop)
+    }
+}
+
+/// One number that the solver shows.
+pub(crate) fn number_of(simulation: &Simulation, name: &str) -> Option<f64> {
+    let mut numbers = Numbers::wanting([name]);
+    simulation.solver().show(&mut numbers);
+    numbers.get(name)
+}

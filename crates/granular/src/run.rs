@@ -1,0 +1,352 @@
+//! Running a scene, stage by stage, and taking an interrupted run up again.
+
+use crate::check;
+use crate::failure::Failure;
+use crate::folder::{RunFolder, provenance};
+use crate::model::{self, Model};
+use crate::observers::{self, Rest, SnapshotTimer};
+use crate::progress;
+use crate::scene::{End, Scene};
+use crate::scene_file::SceneText;
+use granular_core::simulation::find_section;
+use granular_core::{Ending, Scheduled, Section, Simulation};
+use granular_io::{SnapshotStore, hash_hex, state_hash};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Raised by a signal; holds its number.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupt {
+    /// Whether to stop.
+    pub raised: Arc<AtomicBool>,
+    /// Number of the signal.
+    pub signal: Arc<AtomicUsize>,
+}
+
+/// What was a stage and how it began and ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StageRecord {
+    /// Name.
+    pub name: String,
+    /// Simulated time at its start \[s\].
+    pub start: f64,
+    /// Simulated time at its end \[s\]; absent while it is under way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end: Option<f64>,
+    /// Step \[s\].
+    pub dt: f64,
+    /// Why it ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ended: Option<String>,
+    /// Front and height of the main mass at its start \[m\].
+    pub front: f64,
+    /// Height of the main mass at its start \[m\].
+    pub height: f64,
+}
+
+/// A run under way.
+struct Session<'a> {
+    scene: &'a Scene,
+    model: Model,
+    folder: RunFolder,
+    store: SnapshotStore,
+    outputs: Vec<Scheduled>,
+    records: Vec<StageRecord>,
+    steps: Vec<f64>,
+    interrupt: &'a Interrupt,
+    quiet: bool,
+    begun: Instant,
+    first_step: u64,
+    /// State of the observer of rest, when a resumed run was within a stage that waits for it.
+    rest: Option<Section>,
+}
+
+/// Runs a scene in a new folder.
+///
+/// # Errors
+/// When the scene is wrong or refused, a guard stops it, something cannot be written, or the run
+/// is interrupted.
+pub fn run(text: &SceneText, out: &Path, force: bool, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
+    let (scene, model) = check::read(text)?;
+    let (_, steps, problems) = check::limits_of(&scene, &model);
+    if !problems.is_empty() {
+        return Err(Failure::Refused(problems));
+    }
+    let folder = RunFolder::create(out, text.text(), force)?;
+    let mut session = Session::new(&scene, model, folder, steps, interrupt, quiet, true)?;
+    session.write_facts("running", None)?;
+    session.finish_run(0, false)
+}
+
+/// Takes the run in a folder up again from its newest snapshot.
+///
+/// # Errors
+/// As [`run`], and when no snapshot can be read.
+pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
+    let folder = RunFolder::open(out)?;
+    let text = SceneText::read(&folder.scene_path())?;
+    if folder.facts()?["exit"] == "done" {
+        return Err(Failure::io(out.display(), "this run is done; there is nothing to resume"));
+    }
+    let (scene, model) = check::read(&text)?;
+    let (_, steps, _) = check::limits_of(&scene, &model);
+    let latest = folder.snapshots().latest()?;
+    for warning in &latest.warnings {
+        eprintln!("warning: {warning}; an older snapshot is used");
+    }
+    let mut session = Session::new(&scene, model, folder, steps, interrupt, quiet, false)?;
+    let stage = session.restore(&latest.sections)?;
+    if !quiet {
+        let clock = session.model.simulation.clock();
+        eprintln!("resuming at {:.6} s, step {}", clock.time(), clock.step());
+    }
+    session.finish_run(stage, true)
+}
+
+/// Draws the figures of a run again. Returns their paths without ending.
+///
+/// # Errors
+/// When the folder is none of a run, or a figure cannot be drawn.
+pub fn plot(out: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let folder = RunFolder::open(out)?;
+    let text = SceneText::read(folder.scene_path())?;
+    let (scene, model) = check::read(&text)?;
+    let records: Vec<StageRecord> = serde_json::from_value(folder.facts()?["stages"].clone())
+        .map_err(|error| Failure::io(out.display(), format!("run.json has no stages: {error}")))?;
+    crate::figures::draw(&scene, &folder, &records, model.column)
+}
+
+impl<'a> Session<'a> {
+    fn new(
+        scene: &'a Scene,
+        model: Model,
+        folder: RunFolder,
+        steps: Vec<f64>,
+        interrupt: &'a Interrupt,
+        quiet: bool,
+        fresh: bool,
+    ) -> Result<Self, Failure> {
+        let shown = model.simulation.solver().shown();
+        let outputs = scene.outputs.iter();
+        let outputs = outputs.map(|output| observers::of_output(output, folder.path(), &shown, fresh));
+        Ok(Self {
+            scene,
+            outputs: outputs.collect::<Result<_, _>>()?,
+            store: folder.snapshots(),
+            first_step: 0,
+            rest: None,
+            begun: Instant::now(),
+            records: Vec::new(),
+            model,
+            folder,
+            steps,
+            interrupt,
+            quiet,
+        })
+    }
+
+    /// Runs all stages from `first` on and writes what is known at the end. `under_way` when the
+    /// first stage was begun before.
+    fn finish_run(&mut self, first: usize, under_way: bool) -> Result<Value, Failure> {
+        self.first_step = self.model.simulation.clock().step();
+        let result = (first..self.scene.stages.len())
+            .try_for_each(|stage| self.stage(stage, under_way && stage == first))
+            .and_then(|()| self.close());
+        match result {
+            Ok(()) => {
+                crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
+                self.write_facts("done", Some(self.folder.checksums()?))
+            }
+            Err(failure) => {
+                let exit = if let Failure::Interrupted { .. } = failure { "interrupted" } else { "failed" };
+                // The failure itself matters more than a folder that cannot be written.
+                let _ = self.write_facts(exit, None);
+                Err(failure)
+            }
+        }
+    }
+
+    fn close(&mut self) -> Result<(), Failure> {
+        for output in &mut self.outputs {
+            output.finish(&self.model.simulation).map_err(granular_core::RunError::from)?;
+        }
+        self.save(self.scene.stages.len())
+    }
+
+    fn stage(&mut self, index: usize, under_way: bool) -> Result<(), Failure> {
+        let stage = &self.scene.stages[index];
+        if !under_way {
+            self.begin_stage(index)?;
+        }
+        let (longest, quiet_flag) = match stage.end {
+            End::For(time) => (time.value(), None),
+            End::Quiet { within, .. } => (within.value(), Some(Arc::new(AtomicBool::new(false)))),
+        };
+        let snapshot_due = Arc::new(AtomicBool::new(false));
+        let mut extra = self.stage_observers(index, longest, quiet_flag.as_ref(), &snapshot_due)?;
+        let ended = loop {
+            let mut observers: Vec<Scheduled> = self.outputs.drain(..).chain(extra.drain(..)).collect();
+            let ending = self.model.simulation.run(longest, &mut observers, &self.interrupt.raised);
+            extra = observers.split_off(self.scene.outputs.len());
+            self.outputs = observers;
+            match ending.map_err(|error| self.explain(error))? {
+                Ending::Interrupted => {
+                    self.save_with(index, &extra)?;
+                    finish_all(&mut extra, &self.model.simulation)?;
+                    return Err(self.interrupted());
+                }
+                Ending::Stopped if snapshot_due.swap(false, Ordering::Relaxed) => self.save_with(index, &extra)?,
+                Ending::Stopped => break "at rest",
+                Ending::Finished if quiet_flag.is_some() => break "not at rest within the time",
+                Ending::Finished => break "time",
+            }
+        };
+        finish_all(&mut extra, &self.model.simulation)?;
+        self.end_stage(ended);
+        Ok(())
+    }
+
+    fn begin_stage(&mut self, index: usize) -> Result<(), Failure> {
+        for action in &self.model.stages[index] {
+            model::apply(action, self.model.simulation.solver_mut());
+        }
+        self.model.simulation.begin_segment(self.steps[index])?;
+        let number = |name| observers::number_of(&self.model.simulation, name).unwrap_or(f64::NAN);
+        self.records.push(StageRecord {
+            name: self.scene.stages[index].name.clone(),
+            start: self.model.simulation.clock().time(),
+            end: None,
+            dt: self.steps[index],
+            ended: None,
+            front: number("front"),
+            height: number("height"),
+        });
+        self.save(index)
+    }
+
+    fn stage_observers(
+        &mut self,
+        index: usize,
+        longest: f64,
+        quiet_flag: Option<&Arc<AtomicBool>>,
+        snapshot_due: &Arc<AtomicBool>,
+    ) -> Result<Vec<Scheduled>, Failure> {
+        let interval = Duration::from_secs_f64(self.scene.snapshot_every.value());
+        let mut extra = vec![SnapshotTimer::scheduled(interval, snapshot_due.clone())];
+        if let (End::Quiet { kinetic_over_potential, within }, Some(flag)) = (self.scene.stages[index].end, quiet_flag) {
+            let mut rest = Rest::scheduled(kinetic_over_potential, within.value(), flag.clone());
+            if let Some(saved) = self.rest.take() {
+                rest.restore(&saved)?;
+            }
+            extra.push(rest);
+        }
+        if !self.quiet {
+            let name = format!("{} ({}/{})", self.scene.stages[index].name, index + 1, self.scene.stages.len());
+            let end = self.records.last().map_or(0.0, |record| record.start) + longest;
+            extra.push(progress::scheduled(progress::StageLine { name, end }));
+        }
+        Ok(extra)
+    }
+
+    fn end_stage(&mut self, ended: &str) {
+        let time = self.model.simulation.clock().time();
+        if let Some(record) = self.records.last_mut() {
+            record.end = Some(time);
+            record.ended = Some(ended.to_owned());
+            if !self.quiet {
+                eprintln!("{}: {:.6} s to {time:.6} s ({ended})", record.name, record.start);
+            }
+        }
+    }
+
+    /// What to say when the run loop fails.
+    fn explain(&self, error: granular_core::RunError) -> Failure {
+        match Failure::from(error) {
+            Failure::Stopped { reason, hint } => {
+                let last = format!("the last good snapshot is in {}", self.store.folder().display());
+                Failure::Stopped { reason, hint: format!("{hint}; {last}") }
+            }
+            other => other,
+        }
+    }
+
+    fn interrupted(&self) -> Failure {
+        let hint = format!("go on with `granular resume {}`", self.folder.path().display());
+        Failure::Interrupted { signal: self.interrupt.signal.load(Ordering::Relaxed), hint }
+    }
+}
+
+fn finish_all(observers: &mut [Scheduled], simulation: &Simulation) -> Result<(), Failure> {
+    for observer in observers {
+        observer.finish(simulation).map_err(granular_core::RunError::from)?;
+    }
+    Ok(())
+}
+
+/// Snapshots.
+impl Session<'_> {
+    fn save(&mut self, stage: usize) -> Result<(), Failure> {
+        self.save_with(stage, &[])
+    }
+
+    /// Saves clock, solver, outputs, the observer of rest, and which stage is under way.
+    fn save_with(&mut self, stage: usize, extra: &[Scheduled]) -> Result<(), Failure> {
+        let mut sections = self.model.simulation.save();
+        let mut run = Section::new("run");
+        run.put_one("stage", stage as u64);
+        run.put_text("records", &serde_json::to_string(&self.records).expect("records can be written"));
+        run.put_text("version", env!("CARGO_PKG_VERSION"));
+        sections.push(run);
+        sections.extend(self.outputs.iter().map(Scheduled::save));
+        sections.extend(extra.iter().filter(|observer| observer.name() == "rest").map(Scheduled::save));
+        self.store.save(self.model.simulation.clock().step(), &sections)?;
+        Ok(())
+    }
+
+    /// Restores everything; returns the stage under way.
+    fn restore(&mut self, sections: &[Section]) -> Result<usize, Failure> {
+        let run = find_section(sections, "run")?;
+        let version = run.text("version")?;
+        if version != env!("CARGO_PKG_VERSION") {
+            return Err(Failure::Io(format!(
+                "the snapshot is of version {version}, this program of version {}; resume with that version",
+                env!("CARGO_PKG_VERSION")
+            )));
+        }
+        self.model.simulation.restore(sections)?;
+        for output in &mut self.outputs {
+            output.restore(find_section(sections, &format!("observer {}", output.name()))?)?;
+        }
+        self.records = serde_json::from_str(&run.text("records")?)
+            .map_err(|error| Failure::Io(format!("section `run/records` of the snapshot: {error}")))?;
+        self.rest = sections.iter().find(|section| section.name() == "observer rest").cloned();
+        Ok(run.one::<u64>("stage")? as usize)
+    }
+
+    fn write_facts(&self, exit: &str, checksums: Option<Value>) -> Result<Value, Failure> {
+        let simulation = &self.model.simulation;
+        let (clock, wall) = (simulation.clock(), self.begun.elapsed().as_secs_f64());
+        let steps = clock.step() - self.first_step;
+        let metrics = crate::figures::metrics(self.scene, simulation, &self.records, self.model.column);
+        let facts = json!({
+            "scene": self.folder.scene_path().display().to_string(),
+            "solver": simulation.solver().name(),
+            "exit": exit,
+            "simulated_seconds": clock.time(),
+            "steps": clock.step(),
+            "wall_seconds": wall,
+            "rate": steps as f64 * simulation.solver().size().0 as f64 / wall,
+            "state_hash": hash_hex(state_hash(&simulation.save())),
+            "metrics": metrics,
+            "stages": self.records,
+            "built": provenance(),
+            "checksums": checksums.unwrap_or(Value::Null),
+        });
+        self.folder.set_facts(&facts)?;
+        Ok(facts)
+    }
+}

@@ -1,0 +1,84 @@
+//! Which names a scene uses: files of outputs, and what figures need of them.
+
+use super::{FigureSpec, Writer};
+
+/// What a figure draws from.
+pub(crate) struct Need<'a> {
+    /// Key under which the figure names its output.
+    pub(crate) key: &'static str,
+    /// Path of the output.
+    pub(crate) output: &'a str,
+    /// What the output must hold.
+    pub(crate) names: Vec<&'a str>,
+    /// Stage from whose start the figure counts.
+    pub(crate) stage: Option<&'a str>,
+}
+
+impl Writer {
+    /// File, or files without their ending, in the run folder.
+    pub fn path(&self) -> &str {
+        match self {
+            Self::Table { path, .. }
+            | Self::Fields { path, .. }
+            | Self::Contacts { path, .. }
+            | Self::Hdf5 { path, .. } => path,
+        }
+    }
+
+    /// Probes or fields.
+    pub fn names(&self) -> &[String] {
+        match self {
+            Self::Table { probes: names, .. }
+            | Self::Fields { fields: names, .. }
+            | Self::Contacts { fields: names, .. }
+            | Self::Hdf5 { fields: names, .. } => names,
+        }
+    }
+}
+
+impl FigureSpec {
+    /// Name of the figure, without ending.
+    pub fn path(&self) -> &str {
+        match self {
+            Self::Series { path, .. }
+            | Self::Runout { path, .. }
+            | Self::Energies { path, .. }
+            | Self::Flow { path, .. }
+            | Self::ForceChains { path, .. } => path,
+        }
+    }
+
+    pub(crate) fn needs(&self) -> Need<'_> {
+        match self {
+            Self::Series { table, columns, .. } => {
+                let names = columns.iter().map(String::as_str).collect();
+                Need { key: "table", output: table, names, stage: None }
+            }
+            Self::Runout { table, stage, .. } => {
+                Need { key: "table", output: table, names: vec!["front", "height"], stage: Some(stage) }
+            }
+            Self::Energies { table, stage, .. } => {
+                Need { key: "table", output: table, names: ENERGIES.to_vec(), stage: Some(stage) }
+            }
+            Self::Flow { fields, color, stage, .. } => {
+                Need { key: "fields", output: fields, names: vec!["radius", color], stage: Some(stage) }
+            }
+            Self::ForceChains { contacts, stage, .. } => {
+                Need { key: "contacts", output: contacts, names: vec!["normal_force"], stage: Some(stage) }
+            }
+        }
+    }
+}
+
+/// Columns that the figure of energies draws.
+pub(crate) const ENERGIES: &[&str] = &[
+    "potential_energy",
+    "kinetic_energy",
+    "rotational_energy",
+    "contact_energy",
+    "loss_sliding",
+    "loss_sliding_at_walls",
+    "loss_normal_damping",
+    "loss_tangential_damping",
+    "energy_residual",
+];

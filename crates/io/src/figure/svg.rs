@@ -1,0 +1,91 @@
+//! Drawings as SVG.
+
+use super::drawing::{Drawing, Fill, Segment, Shape, Spot, Stroke};
+use std::fmt::Write;
+
+pub(super) fn document(drawing: &Drawing) -> String {
+    let [width, height] = drawing.size;
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
+        escaped(&drawing.title)
+    );
+    for shape in &drawing.shapes {
+        put(&mut text, shape);
+    }
+    text.push_str("</svg>\n");
+    text
+}
+
+fn put(text: &mut String, shape: &Shape) {
+    let written = match shape {
+        Shape::Path { outline, fill, stroke } => {
+            let style = style(fill.as_ref(), stroke.as_ref());
+            writeln!(text, "<path d=\"{}\"{style}/>", path(outline))
+        }
+        Shape::Circle { center: [x, y], radius, fill, stroke } => {
+            let (x, y, r) = (number(*x), number(*y), number(*radius));
+            let style = style(fill.as_ref(), stroke.as_ref());
+            writeln!(text, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"{style}/>")
+        }
+        Shape::Text { text: label, outline, colour } => {
+            let (label, colour) = (escaped(label), colour.hex());
+            let path = path(outline);
+            writeln!(text, "<path role=\"text\" aria-label=\"{label}\" d=\"{path}\" fill=\"{colour}\"/>")
+        }
+    };
+    written.expect("writing to a string cannot fail");
+}
+
+fn style(fill: Option<&Fill>, stroke: Option<&Stroke>) -> String {
+    let mut style = match fill {
+        None => " fill=\"none\"".to_owned(),
+        Some(fill) if fill.opacity < 1.0 => {
+            format!(" fill=\"{}\" fill-opacity=\"{}\"", fill.colour.hex(), number(fill.opacity))
+        }
+        Some(fill) => format!(" fill=\"{}\"", fill.colour.hex()),
+    };
+    if let Some(stroke) = stroke {
+        let (colour, width) = (stroke.colour.hex(), number(stroke.width));
+        style.push_str(&format!(" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linejoin=\"round\""));
+        if stroke.dashed {
+            style.push_str(" stroke-dasharray=\"6 4\"");
+        }
+    }
+    style
+}
+
+fn path(outline: &[Segment]) -> String {
+    let mut text = String::with_capacity(outline.len() * 14);
+    let mut put = |letter: char, spots: &[Spot]| {
+        text.push(letter);
+        for (i, [x, y]) in spots.iter().enumerate() {
+            text.push_str(if i > 0 { " " } else { "" });
+            text.push_str(&number(*x));
+            text.push(' ');
+            text.push_str(&number(*y));
+        }
+    };
+    for segment in outline {
+        match *segment {
+            Segment::Move(a) => put('M', &[a]),
+            Segment::Line(a) => put('L', &[a]),
+            Segment::Quad(a, b) => put('Q', &[a, b]),
+            Segment::Close => put('Z', &[]),
+        }
+    }
+    text
+}
+
+/// A hundredth of a pixel is enough.
+fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn escaped(text: &str) -> String {
+    let kept = text.chars().filter(|sign| !sign.is_control());
+    kept.collect::<String>().replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
