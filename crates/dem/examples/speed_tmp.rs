@@ -18,13 +18,14 @@ fn main() {
     let n = grains.len();
     let ledger = args.get(5).is_some();
     let mut dem = Dem2::new(Setup { materials, grains, walls, gravity: DVec2::new(0.0, -9.81), options: Options { skin, ledger, ..Options::default() } }).unwrap();
-    let dt = 92.5e-6 / 50.0;
+    let dt = 92.5e-6 / args.get(7).map_or(50.0, |s| s.parse::<f64>().unwrap());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         dem.advance(dt, 200).unwrap();
         let t = std::time::Instant::now();
         dem.advance(dt, steps).unwrap();
         let s = t.elapsed().as_secs_f64();
+        if let Some(path) = args.get(6) { let mut t = String::new(); for (_, g) in dem.grains() { t += &format!("{:.12e} {:.12e} {:.12e}\n", g.position.x, g.position.y, g.radius); } std::fs::write(path, t).unwrap(); }
         println!("N={n} threads={threads} skin={skin} rate={:.3e} front={:.5} bytes/grain {} residual {:?}", n as f64 * steps as f64 / s, dem.reach(0), dem.memory().bytes_per_item, dem.energy_residual().map(|r| r / dem.energies().potential));
     });
 }

@@ -14,6 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(&folder)?;
     table(&folder)?;
     points(&folder)?;
+    nothing(&folder)?;
     grids(&folder)?;
     #[cfg(feature = "hdf5")]
     temporal(&folder)?;
@@ -82,6 +83,16 @@ fn points(folder: &Path) -> Result<(), IoError> {
         collection = Collection::reopen_at(&folder.join("points.pvd"), step + 1)?;
     }
     Ok(())
+}
+
+/// No points and no contacts, as before the first grain is poured.
+fn nothing(folder: &Path) -> Result<(), IoError> {
+    let mut frame = Frame::wanting_all();
+    frame.field("velocity", "m/s", FieldRef::Vector2(&[]));
+    frame.link_field("normal_force", "N", FieldRef::Scalar(&[]));
+    let location = Location::Points(FieldRef::Vector2(&[]));
+    granular_io::write_vtp(&folder.join("empty.vtp"), &location, &frame, 0.0)?;
+    granular_io::write_links_vtp(&folder.join("empty-links.vtp"), &location, &frame, 0.0)
 }
 
 fn grids(folder: &Path) -> Result<(), IoError> {

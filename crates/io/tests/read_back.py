@@ -18,6 +18,7 @@ import pandas as pd
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
+np.set_printoptions(precision=17)
 TIMES = [0.0, 0.1 + 0.2, 1.5e-7]
 
 
@@ -105,6 +106,12 @@ def check_links(folder, step):
     check_field_data(what, output, step, TIMES[step], ["normal_force: N"])
 
 
+def check_empty(folder):
+    for what in ["empty.vtp", "empty-links.vtp"]:
+        output = read_xml(vtk.vtkXMLPolyDataReader(), folder / what)
+        same(f"{what} counts", [output.GetNumberOfPoints(), output.GetNumberOfCells()], [0, 0])
+
+
 def check_image(what, output, cells_along_z, step):
     extent = (0, 4, 0, 3, 0, 0 if cells_along_z == 1 else cells_along_z)
     same(f"{what} extent", output.GetExtent(), extent)
@@ -172,6 +179,7 @@ def main():
     folder = Path(sys.argv[1])
     check_table(folder)
     check_points(folder)
+    check_empty(folder)
     check_images(folder)
     with_hdf = (folder / "points.vtkhdf").exists() or "--hdf5" in sys.argv
     if with_hdf:

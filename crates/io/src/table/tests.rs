@@ -60,6 +60,13 @@ fn what_does_not_fit_is_refused_and_the_file_stays() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_an_error() {
+    let full = TableWriter::create(Path::new("/dev/full"), &COLUMNS).unwrap_err().to_string();
+    assert!(full.contains("could not write `/dev/full`: No space left"), "{full}");
+}
+
+#[test]
 fn a_bad_line_is_named() {
     let wrong = parse_table("time [s],x\n1,2\n\n3,fast\n").unwrap_err();
     assert_eq!(wrong, "line 4, column `x`: `fast` is not a number");

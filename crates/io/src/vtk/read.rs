@@ -51,7 +51,9 @@ pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
             let value = line.split('>').nth(1).and_then(|rest| rest.split('<').next());
             read.time = value.and_then(|text| text.trim().parse().ok()).unwrap_or(f64::NAN);
         }
-        let Some(offset) = attribute(line, "offset").and_then(|text| text.parse::<usize>().ok()) else { continue };
+        let Some(offset) = attribute(line, "offset").and_then(|text| text.parse::<usize>().ok()) else {
+            continue;
+        };
         let kind = attribute(line, "type").unwrap_or_default();
         let values = block(blocks, offset, &kind).ok_or_else(|| fail("it ends within an array"))?;
         let components = attribute(line, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
@@ -116,7 +118,10 @@ mod tests {
         assert!(read.links.is_empty());
         super::super::write_links_vtp(&path, &location, &frame, 1.0).unwrap();
         let read = read_vtp(&path).unwrap();
-        assert_eq!((read.links.as_slice(), read.magnitude("normal_force").unwrap()), (&[[0, 1]][..], vec![7.0]));
+        assert_eq!(
+            (read.links.as_slice(), read.magnitude("normal_force").unwrap()),
+            (&[[0, 1]][..], vec![7.0])
+        );
         std::fs::write(&path, b"noise").unwrap();
         assert!(read_vtp(&path).is_err());
     }
