@@ -100,7 +100,8 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
         })
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
-    let estimated_seconds = if problems.is_empty() { count * seconds_per_step(&mut model, steps[0]) } else { f64::NAN };
+    let estimated_seconds =
+        if problems.is_empty() { count * seconds_per_step(&mut model, steps[0]) } else { f64::NAN };
     Ok(Report {
         scene: text.name().to_owned(),
         size: model.simulation.solver().size(),
@@ -158,7 +159,11 @@ impl fmt::Display for Report {
         writeln!(f, "{}: {count} {item}s, solver {}", self.scene, self.solver)?;
         writeln!(f, "\nstages")?;
         for (name, dt, longest) in &self.stages {
-            writeln!(f, "  {name:<24} at most {longest} s in steps of {dt:.4e} s: {:.0} steps", (longest / dt).ceil())?;
+            writeln!(
+                f,
+                "  {name:<24} at most {longest} s in steps of {dt:.4e} s: {:.0} steps",
+                (longest / dt).ceil()
+            )?;
         }
         writeln!(f, "\nlimits on the step")?;
         let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);
@@ -183,7 +188,11 @@ impl fmt::Display for Report {
         let megabytes = self.memory.bytes as f64 / 1e6;
         writeln!(f, "\nmemory    {megabytes:.2} MB, {} bytes per {item}", self.memory.bytes_per_item)?;
         let threads = rayon::current_num_threads();
-        writeln!(f, "run time  at most {} on {threads} threads (measured)", duration(self.estimated_seconds))?;
+        writeln!(
+            f,
+            "run time  at most {} on {threads} threads (measured)",
+            duration(self.estimated_seconds)
+        )?;
         writeln!(f, "\nleft out")?;
         for left_out in &self.memory.left_out {
             writeln!(f, "  {left_out}")?;

@@ -132,7 +132,9 @@ impl Verb {
             Self::Plot { folder } => {
                 let paths = run::plot(&folder)?;
                 let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-                show(common, &json!(lines), || lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect());
+                show(common, &json!(lines), || {
+                    lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
+                });
                 Ok(())
             }
             Self::Info { path } => info(common, path.as_deref()),

@@ -43,7 +43,9 @@ pub fn draw(
             std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
         }
         let figure = match spec {
-            FigureSpec::Series { table, columns, .. } => series(scene, &table_of(folder, table)?, columns).figure(),
+            FigureSpec::Series { table, columns, .. } => {
+                series(scene, &table_of(folder, table)?, columns).figure()
+            }
             FigureSpec::Runout { table, stage, .. } => {
                 column::runout(scene, &table_of(folder, table)?, record(records, stage)?, column).figure()
             }

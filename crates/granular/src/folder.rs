@@ -23,11 +23,15 @@ impl RunFolder {
     /// # Errors
     /// When something is in the way, or the folder cannot be written.
     pub fn create(path: &Path, scene: &str, force: bool) -> Result<Self, Failure> {
-        let occupied = path.exists() && fs::read_dir(path).map_or(true, |mut entries| entries.next().is_some());
+        let occupied =
+            path.exists() && fs::read_dir(path).map_or(true, |mut entries| entries.next().is_some());
         if occupied {
             let is_run = path.join(RUN_FILE).is_file();
             if !is_run {
-                return Err(Failure::io(path.display(), "is not empty and no run folder; choose another with --out"));
+                return Err(Failure::io(
+                    path.display(),
+                    "is not empty and no run folder; choose another with --out",
+                ));
             }
             if !force {
                 let reason = "holds a run already; --force replaces it, --out chooses another folder";

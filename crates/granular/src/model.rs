@@ -105,7 +105,12 @@ impl NamedMaterials {
         if found.is_none() {
             let known: Vec<&str> = self.ids.keys().map(String::as_str).collect();
             let hint = nearest(name, known.iter().copied());
-            problems.add(path, format!("`{name}`, which is no material of this scene"), known.join(", "), hint);
+            problems.add(
+                path,
+                format!("`{name}`, which is no material of this scene"),
+                known.join(", "),
+                hint,
+            );
         }
         found
     }
@@ -147,7 +152,8 @@ fn build_in<D: Dim>(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, walls.list.iter().map(|wall| wall.name.as_str()).collect(), &mut problems);
     let spec = solver_spec(scene, &mut problems);
-    let (Some(gravity), Some(sample), Some(spec), true) = (gravity, sample, spec, problems.0.is_empty()) else {
+    let (Some(gravity), Some(sample), Some(spec), true) = (gravity, sample, spec, problems.0.is_empty())
+    else {
         return Err(problems.0);
     };
     let setup = Setup {
@@ -191,7 +197,12 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
             problems.add(format!("stages.{k}.{key}"), time, "a positive time", "");
         }
         if scene.stages[..k].iter().any(|other| other.name == stage.name) {
-            problems.add(format!("stages.{k}.name"), format!("`{}` again", stage.name), "a name of its own", "");
+            problems.add(
+                format!("stages.{k}.name"),
+                format!("`{}` again", stage.name),
+                "a name of its own",
+                "",
+            );
         }
         if let Some(step) = stage.time_step.filter(|step| step.value() <= 0.0) {
             problems.add(format!("stages.{k}.time_step"), step, "a positive time", "");
@@ -207,7 +218,12 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
         }
         let path = output.write.path();
         if scene.outputs[..k].iter().any(|other| other.write.path() == path) {
-            problems.add(format!("outputs.{k}.write.path"), format!("`{path}` again"), "a file of its own", "");
+            problems.add(
+                format!("outputs.{k}.write.path"),
+                format!("`{path}` again"),
+                "a file of its own",
+                "",
+            );
         }
         if !is_plain_path(path) {
             let allowed = "a relative path inside the run folder";
@@ -236,7 +252,12 @@ fn check_wall_names(scene: &Scene, names: Vec<&str>, problems: &mut Problems) {
             let (Change::Open(name) | Change::Close(name)) = change else { continue };
             if !names.contains(&name.as_str()) {
                 let path = format!("stages.{k}.changes.{c}");
-                problems.add(path, format!("`{name}`"), names.join(", "), nearest(name, names.iter().copied()));
+                problems.add(
+                    path,
+                    format!("`{name}`"),
+                    names.join(", "),
+                    nearest(name, names.iter().copied()),
+                );
             }
         }
     }
@@ -282,7 +303,12 @@ fn actions<D: Dim>(
         if !scene.stages.iter().any(|other| other.name == *stage) {
             let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
             let hint = nearest(stage, known.iter().copied());
-            problems.add(format!("{path}.opens"), format!("`{stage}`"), format!("a stage: {}", known.join(", ")), hint);
+            problems.add(
+                format!("{path}.opens"),
+                format!("`{stage}`"),
+                format!("a stage: {}", known.join(", ")),
+                hint,
+            );
         }
     }
     let mut stages = Vec::new();
@@ -376,7 +402,8 @@ fn check_figures(scene: &Scene, problems: &mut Problems) {
             problems.add(place, format!("`{}`, which no output writes", need.output), known.join(", "), hint);
             continue;
         };
-        for name in need.names.iter().filter(|name| !output.write.names().iter().any(|other| other == *name)) {
+        for name in need.names.iter().filter(|name| !output.write.names().iter().any(|other| other == *name))
+        {
             let hint = format!("add \"{name}\" to the output `{}`", need.output);
             problems.add(place.clone(), format!("an output without `{name}`"), need.names.join(", "), hint);
         }

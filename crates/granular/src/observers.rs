@@ -14,7 +14,12 @@ use std::time::Duration;
 
 /// Makes the observer of an output. On a fresh start its file is created; a resumed run reopens
 /// it when its state is restored.
-pub(crate) fn of_output(output: &Output, folder: &Path, shown: &[Shown], fresh: bool) -> Result<Scheduled, Failure> {
+pub(crate) fn of_output(
+    output: &Output,
+    folder: &Path,
+    shown: &[Shown],
+    fresh: bool,
+) -> Result<Scheduled, Failure> {
     let every = match output.every {
         EverySpec::Time(time) => Every::Time(time.value()),
         EverySpec::Steps(steps) => Every::Steps(steps),

@@ -70,7 +70,13 @@ struct Session<'a> {
 /// # Errors
 /// When the scene is wrong or refused, a guard stops it, something cannot be written, or the run
 /// is interrupted.
-pub fn run(text: &SceneText, out: &Path, force: bool, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
+pub fn run(
+    text: &SceneText,
+    out: &Path,
+    force: bool,
+    quiet: bool,
+    interrupt: &Interrupt,
+) -> Result<Value, Failure> {
     let (scene, model) = check::read(text)?;
     let (_, steps, problems) = check::limits_of(&scene, &model);
     if !problems.is_empty() {
@@ -199,7 +205,9 @@ impl<'a> Session<'a> {
                     finish_all(&mut extra, &self.model.simulation)?;
                     return Err(self.interrupted());
                 }
-                Ending::Stopped if snapshot_due.swap(false, Ordering::Relaxed) => self.save_with(index, &extra)?,
+                Ending::Stopped if snapshot_due.swap(false, Ordering::Relaxed) => {
+                    self.save_with(index, &extra)?
+                }
                 Ending::Stopped => break "at rest",
                 Ending::Finished if quiet_flag.is_some() => break "not at rest within the time",
                 Ending::Finished => break "time",
@@ -237,7 +245,9 @@ impl<'a> Session<'a> {
     ) -> Result<Vec<Scheduled>, Failure> {
         let interval = Duration::from_secs_f64(self.scene.snapshot_every.value());
         let mut extra = vec![SnapshotTimer::scheduled(interval, snapshot_due.clone())];
-        if let (End::Quiet { kinetic_over_potential, within }, Some(flag)) = (self.scene.stages[index].end, quiet_flag) {
+        if let (End::Quiet { kinetic_over_potential, within }, Some(flag)) =
+            (self.scene.stages[index].end, quiet_flag)
+        {
             let mut rest = Rest::scheduled(kinetic_over_potential, within.value(), flag.clone());
             if let Some(saved) = self.rest.take() {
                 rest.restore(&saved)?;
@@ -245,7 +255,8 @@ impl<'a> Session<'a> {
             extra.push(rest);
         }
         if !self.quiet {
-            let name = format!("{} ({}/{})", self.scene.stages[index].name, index + 1, self.scene.stages.len());
+            let name =
+                format!("{} ({}/{})", self.scene.stages[index].name, index + 1, self.scene.stages.len());
             let end = self.records.last().map_or(0.0, |record| record.start) + longest;
             extra.push(progress::scheduled(progress::StageLine { name, end }));
         }

@@ -21,7 +21,8 @@ fn measured(restitution: f64, tension: Tension, phase_step: f64, gap: f64) -> f6
         Grain::at(apart, radius, glass).moving(DVec2::new(-0.5 * speed, 0.0)),
     ];
     let options = Options { tension, ..Options::default() };
-    let mut dem = Dem2::new(Setup { materials, grains, walls: vec![], gravity: DVec2::ZERO, options }).unwrap();
+    let mut dem =
+        Dem2::new(Setup { materials, grains, walls: vec![], gravity: DVec2::ZERO, options }).unwrap();
     dem.advance(dt, (gap + 5.0 / phase_step) as u64 + 3).unwrap();
     (dem.grain(1).velocity.x - dem.grain(0).velocity.x) / speed
 }
@@ -42,7 +43,10 @@ fn restitution_is_of_second_order_for_both_cuts() {
             let steps = [0.31, 0.157, 0.0771, 0.0383, 0.0193, 0.00967];
             let errors: Vec<f64> = steps.iter().map(|&h| root_mean_square(e, tension, h)).collect();
             let order = (errors[0] / errors[5]).ln() / (steps[0] / steps[5]).ln();
-            println!("{tension:?} e = {e}: zeta {:.4} errors {errors:?} order {order:.2}", damping_for_restitution(e, tension));
+            println!(
+                "{tension:?} e = {e}: zeta {:.4} errors {errors:?} order {order:.2}",
+                damping_for_restitution(e, tension)
+            );
             assert!(order > 1.8);
         }
     }

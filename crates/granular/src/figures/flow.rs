@@ -4,9 +4,9 @@ use super::{Units, title};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::scene::{Scene, WallSpec};
+use granular_io::Collection;
 use granular_io::figure::{Chain, Grain, GrainFigure, GrainPanel};
 use granular_io::vtk::{Points, read_vtp};
-use granular_io::Collection;
 use std::path::Path;
 
 /// The file of an output that is nearest to a simulated time \[s\].

@@ -8,7 +8,9 @@ use granular_dem::{Grain, MaterialId};
 use granular_packing::{Grading, Lattice, Sides, ballistic, loose_lattice};
 
 /// Solid fraction that a deposit comes to rest at, to estimate sizes: plane and space.
-const SETTLED: [f64; 2] = [0.83, 0.60];
+const SETTLED: [f64; 2] = [0.815, 0.60];
+/// Part of a ballistic deposit that is taken off so that its surface is level.
+const TAKEN_OFF: f64 = 0.15;
 /// Gap between grains of a loose lattice over the largest diameter.
 const LOOSE_GAP: f64 = 0.1;
 /// More grains than this are a slip of the pen.
@@ -104,7 +106,9 @@ impl<'a> Column<'a> {
             _ => {}
         }
         match extent {
-            Extent::Grains(0) => problems.add("sample.extent", "a column of 0 grains", "at least one grain", ""),
+            Extent::Grains(0) => {
+                problems.add("sample.extent", "a column of 0 grains", "at least one grain", "")
+            }
             Extent::Width(width) if width.value() <= 0.0 => {
                 problems.add("sample.extent", width, "a positive length", "");
             }
@@ -146,10 +150,7 @@ impl<'a> Column<'a> {
 
     /// Radii, places and the size of the column.
     #[allow(clippy::type_complexity)]
-    fn place<D: Dim>(
-        &self,
-        problems: &mut Problems,
-    ) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), String> {
+    fn place<D: Dim>(&self, problems: &mut Problems) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), String> {
         let grading = grading_of(self.grading);
         let solid = if self.packing == PackingSpec::Hexagonal {
             Lattice::Hexagonal.density::<D>()
@@ -171,7 +172,8 @@ impl<'a> Column<'a> {
             problems.add("sample.extent", format!("a column of {count:.0} grains"), "at most 1e8 grains", "");
             return Err(format!("a column of {count:.0} grains"));
         }
-        let radii = grading.sample::<D>(count as usize, self.seed).map_err(|error| error.to_string())?;
+        let count = count as usize;
+        let radii = grading.sample::<D>(count, self.seed).map_err(|error| error.to_string())?;
         let volume: f64 = radii.iter().map(|&radius| D::ball_volume(radius)).sum();
         let width = match self.extent {
             Extent::Width(width) => width.value(),
@@ -179,31 +181,44 @@ impl<'a> Column<'a> {
         };
         let depth = (D::N == 3).then_some(depth_ratio * width);
         let size = ColumnSize { width, height: self.aspect_ratio * width, depth };
-        let positions = self.positions::<D>(&radii, size)?;
-        // A lattice has its own number of sites.
-        let radii = if positions.len() == radii.len() { radii } else { vec![radii[0]; positions.len()] };
-        Ok((radii, positions, size))
-    }
-
-    fn positions<D: Dim>(&self, radii: &[f64], size: ColumnSize) -> Result<Vec<D::Vec>, String> {
-        match self.packing {
-            PackingSpec::Ballistic => {
-                let deposit = ballistic(radii, size.width, Sides::Walls, self.seed).map_err(|e| e.to_string())?;
-                let of_plane = |p: &granular_core::glam::DVec2| {
-                    D::Vec::along(0, p.x) + D::Vec::along(1, p.y)
-                };
-                Ok(deposit.positions.iter().map(of_plane).collect())
-            }
+        let (radii, positions) = match self.packing {
+            PackingSpec::Ballistic => self.level_deposit::<D>(&grading, count, size)?,
             PackingSpec::Hexagonal => {
                 let depth = size.depth.map_or(D::Vec::ZERO, |depth| D::Vec::along(1, depth));
                 let high = D::Vec::along(0, size.width) + depth + D::Vec::along(D::UP, size.height);
-                Lattice::Hexagonal.fill::<D>(radii[0], D::Vec::ZERO, high).map_err(|e| e.to_string())
+                let sites = Lattice::Hexagonal.fill::<D>(radii[0], D::Vec::ZERO, high);
+                let sites = sites.map_err(|error| error.to_string())?;
+                (vec![radii[0]; sites.len()], sites)
             }
             PackingSpec::Loose => {
                 let base: Vec<f64> = std::iter::once(size.width).chain(size.depth).collect();
-                loose_lattice::<D>(radii, D::Vec::ZERO, &base, LOOSE_GAP, self.seed).map_err(|e| e.to_string())
+                let sites = loose_lattice::<D>(&radii, D::Vec::ZERO, &base, LOOSE_GAP, self.seed);
+                (radii, sites.map_err(|error| error.to_string())?)
             }
-        }
+        };
+        Ok((radii, positions, size))
+    }
+
+    /// The lowest `count` disks of a larger ballistic deposit: its rough surface is taken off.
+    fn level_deposit<D: Dim>(
+        &self,
+        grading: &Grading,
+        count: usize,
+        size: ColumnSize,
+    ) -> Result<(Vec<f64>, Vec<D::Vec>), String> {
+        let more = (count as f64 / (1.0 - TAKEN_OFF)).ceil() as usize;
+        let radii = grading.sample::<D>(more, self.seed).map_err(|error| error.to_string())?;
+        let deposit = ballistic(&radii, size.width, Sides::Walls, self.seed).map_err(|e| e.to_string())?;
+        let mut order: Vec<usize> = (0..more).collect();
+        let top = |&index: &usize| deposit.positions[index].y + radii[index];
+        order.sort_by(|a, b| top(a).total_cmp(&top(b)));
+        order.truncate(count);
+        order.sort_unstable();
+        let place = |index: &usize| {
+            let position = deposit.positions[*index];
+            D::Vec::along(0, position.x) + D::Vec::along(1, position.y)
+        };
+        Ok((order.iter().map(|&index| radii[index]).collect(), order.iter().map(place).collect()))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{ColumnSize, NamedMaterials, Problems};
 use crate::scene::WallSpec;
 use granular_core::units::Length;
-use granular_core::{Dim, Linear, Vector};
+use granular_core::{Dim, Vector};
 use granular_dem::{MaterialId, SetupError, Wall};
 
 /// Walls, and which opens at which stage: scene path, name of the wall, name of the stage.
@@ -129,7 +129,9 @@ impl WallSpec {
     fn opens(&self) -> Option<&str> {
         match self {
             Self::Gate { opens, .. } => Some(opens),
-            Self::Plane { opens, .. } | Self::Segment { opens, .. } | Self::Block { opens, .. } => opens.as_deref(),
+            Self::Plane { opens, .. } | Self::Segment { opens, .. } | Self::Block { opens, .. } => {
+                opens.as_deref()
+            }
             _ => None,
         }
     }
