@@ -25,7 +25,10 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) material: &'a [u8],
     pub(crate) first_material: u8,
     pub(crate) walls: &'a [Wall<D>],
+    /// The step \[s\]; zero between steps.
     pub(crate) dt: f64,
+    /// The last step taken \[s\].
+    pub(crate) last_dt: f64,
     /// Surfaces farther apart than this do not meet within the step \[m\].
     pub(crate) margin: f64,
     /// Part of the overlap by which each lever arm is shorter than the radius.
@@ -265,6 +268,8 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
                         given.torque = -load.rolling - load.tangential * arms.1;
                     }
                 } else if *memory != L::Memory::default() {
+                    let law = self.laws.between(view.material_of(first), view.material_of(second));
+                    law.release(memory, &mut self.tally);
                     *memory = L::Memory::default();
                 }
                 if abroad {
@@ -329,11 +334,12 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         for (near, memory) in list.near_walls.iter().zip(&mut list.wall_memory) {
             let first = near.grain as usize;
             let wall = &view.walls[near.wall as usize];
+            let law = self.laws.between(view.material_of(first), wall.material.0);
             let Some((meeting, arm)) = meet_wall::<D, L>(view, first, wall) else {
+                law.release(memory, &mut self.tally);
                 *memory = L::Memory::default();
                 continue;
             };
-            let law = self.laws.between(view.material_of(first), wall.material.0);
             let load = law.load(&meeting, memory, &mut self.tally);
             let local = first - self.start;
             self.force[local] += push_of::<D, L>(&load, meeting.normal);
@@ -467,7 +473,8 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             list.visit_pairs(self.blocks.range(block), |first, second, &memory| {
                 if let Some((meeting, material)) = overlapping::<D, L>(view, first, second) {
                     let law = laws.between(view.material_of(first), material);
-                    visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Grain(second)));
+                    let place = (first, Partner::Grain(second));
+                    visit(contact_of::<D, L>(law, &meeting, memory, place, view.last_dt));
                 }
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
@@ -475,7 +482,8 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
                 let met = meet_wall::<D, L>(view, first, &view.walls[wall]);
                 if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-                    visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Wall(wall)));
+                    let place = (first, Partner::Wall(wall));
+                    visit(contact_of::<D, L>(law, &meeting, memory, place, view.last_dt));
                 }
             }
         }
@@ -546,10 +554,11 @@ fn contact_of<D: Dim, L: ContactLaw<D>>(
     law: &L,
     meeting: &Meeting<D>,
     memory: L::Memory,
-    first: usize,
-    partner: Partner,
+    (first, partner): (usize, Partner),
+    last_dt: f64,
 ) -> Contact<D> {
-    let (load, energy) = law.at_rest(meeting, memory);
+    let meeting = Meeting { dt: last_dt, ..*meeting };
+    let (load, energy) = law.at_rest(&meeting, memory);
     Contact {
         first,
         partner,

@@ -1,7 +1,7 @@
 //! The solver: set-up, the step, and changes between stages.
 
 use crate::contacts::{Contacts, Pairs, Trouble, View};
-use crate::grains::{Grain, Grains};
+use crate::grains::{Grain, Grains, check_finite};
 use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError, Tension};
@@ -89,6 +89,8 @@ pub struct Dem<D: Dim> {
     pub(crate) injected: f64,
     pub(crate) initial_energy: Option<f64>,
     pub(crate) steps: u64,
+    /// The last step taken \[s\].
+    last_dt: f64,
     custom_law: bool,
     skin: f64,
     /// Reach of the present lists \[m\].
@@ -105,7 +107,10 @@ impl<D: Dim> Dem<D> {
     /// # Errors
     /// When a value is out of range.
     pub fn new(setup: Setup<D>) -> Result<Self, SetupError> {
-        Self::build(setup, |materials, options, blocks| choose_law::<D>(materials, options, blocks), false)
+        let law = |materials: &Materials, options: &Options, blocks| {
+            choose_law::<D>(materials, options, blocks, needs_rotation(materials))
+        };
+        Self::build(setup, law, false)
     }
 
     /// A simulation with a contact law of the caller's own.
@@ -151,6 +156,7 @@ impl<D: Dim> Dem<D> {
             injected: 0.0,
             initial_energy: None,
             steps: 0,
+            last_dt: 0.0,
             custom_law,
             travel: 0.0,
         };
@@ -244,7 +250,7 @@ impl<D: Dim> Dem<D> {
     pub fn set_friction(&mut self, material: MaterialId, friction: f64) {
         self.change(|dem| {
             dem.materials.set_friction(material, friction);
-            dem.take_materials();
+            dem.take_materials(needs_rotation(&dem.materials));
         });
     }
 
@@ -266,18 +272,20 @@ impl<D: Dim> Dem<D> {
         }
     }
 
-    fn take_materials(&mut self) {
-        if self.custom_law || self.pairs.tangential() || !needs_rotation(&self.materials) {
+    /// Takes changed materials; grains begin to turn if they shall. They never stop turning: a
+    /// scene may give friction and take it away again.
+    fn take_materials(&mut self, turning: bool) {
+        if self.custom_law || self.pairs.tangential() || !turning {
             self.pairs.update(&self.materials, self.options.tension);
         } else {
-            self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks);
+            self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks, true);
             self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
         }
     }
 
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
-        view_of(&self.grains, &self.walls, &self.options)
+        view_of(&self.grains, &self.walls, &self.options, self.last_dt)
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
@@ -285,7 +293,7 @@ impl<D: Dim> Dem<D> {
     fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.skin.max(4.0 * stride);
         self.travel = 0.0;
-        self.pairs.list(&view_of(&self.grains, &self.walls, &self.options), self.reach, order);
+        self.pairs.list(&view_of(&self.grains, &self.walls, &self.options, self.last_dt), self.reach, order);
     }
 
     /// Sorts grains in memory when the count of steps says so.
@@ -330,7 +338,7 @@ impl<D: Dim> Dem<D> {
             spin: &self.grains.middle_spin,
             dt,
             margin,
-            ..view_of(&self.grains, &self.walls, &self.options)
+            ..view_of(&self.grains, &self.walls, &self.options, self.last_dt)
         };
         self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
         (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
@@ -355,7 +363,12 @@ impl<D: Dim> Dem<D> {
     }
 }
 
-fn view_of<'a, D: Dim>(grains: &'a Grains<D>, walls: &'a [Wall<D>], options: &Options) -> View<'a, D> {
+fn view_of<'a, D: Dim>(
+    grains: &'a Grains<D>,
+    walls: &'a [Wall<D>],
+    options: &Options,
+    last_dt: f64,
+) -> View<'a, D> {
     View {
         position: &grains.position,
         velocity: &grains.velocity,
@@ -366,6 +379,7 @@ fn view_of<'a, D: Dim>(grains: &'a Grains<D>, walls: &'a [Wall<D>], options: &Op
         first_material: grains.first_material,
         walls,
         dt: 0.0,
+        last_dt,
         margin: 0.0,
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
     }
@@ -375,11 +389,16 @@ fn needs_rotation(materials: &Materials) -> bool {
     materials.pairs().any(|(.., pair)| pair.friction > 0.0 || pair.rolling_friction > 0.0)
 }
 
-fn choose_law<D: Dim>(materials: &Materials, options: &Options, blocks: Blocks) -> Box<dyn Pairs<D>> {
+fn choose_law<D: Dim>(
+    materials: &Materials,
+    options: &Options,
+    blocks: Blocks,
+    turning: bool,
+) -> Box<dyn Pairs<D>> {
     let tension = options.tension;
     if materials.pairs().any(|(.., pair)| pair.rolling_friction > 0.0) {
         Box::new(Contacts::<D, LinearRolling>::new(materials, tension, blocks))
-    } else if needs_rotation(materials) {
+    } else if turning {
         Box::new(Contacts::<D, LinearFrictional>::new(materials, tension, blocks))
     } else {
         Box::new(Contacts::<D, LinearNormal>::new(materials, tension, blocks))
@@ -415,6 +434,7 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.last_dt = dt;
         // Between two steps of one call, the end of one and the start of the next share a pass.
         let mut opened = false;
         for remaining in (0..steps).rev() {
@@ -458,6 +478,7 @@ impl<D: Dim> Dem<D> {
         self.grains.save(to);
         self.pairs.save(&self.grains, to);
         to.put_one("steps", self.steps);
+        to.put_one("last step taken", self.last_dt);
         to.put("gravity", &[self.gravity]);
         to.put("losses", &self.losses.to_array());
         to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
@@ -473,10 +494,13 @@ impl<D: Dim> Dem<D> {
         for (k, &value) in friction.iter().enumerate() {
             self.materials.set_friction(MaterialId(k as u8), value);
         }
-        self.take_materials();
+        // Not asked of the friction: grains go on turning after it was taken away.
+        let turning = !from.array::<D::Spin>("spin")?.is_empty();
+        self.take_materials(turning);
         self.grains.restore(from)?;
         self.pairs.restore(from, &self.grains)?;
         self.steps = from.one("steps")?;
+        self.last_dt = from.one("last step taken")?;
         self.gravity = from.array_of("gravity", 1)?[0];
         let losses: Vec<f64> = from.array_of("losses", 5)?;
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
@@ -485,10 +509,10 @@ impl<D: Dim> Dem<D> {
         self.initial_energy = self.options.ledger.then_some(energy[1]);
         let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
         self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
-        if lists::all_finite::<D>(&self.grains.position).is_some() {
-            let found = "a position that is not finite".to_owned();
-            return Err(SnapshotError::Damaged { place: "solver/position".to_owned(), found });
-        }
+        check_finite("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
+        check_finite("gravity", self.gravity.is_finite())?;
+        check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
+        check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
         self.list(0.0, None);
         Ok(())
     }

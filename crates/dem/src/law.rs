@@ -72,9 +72,15 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
         memory: &mut Self::Memory,
         tally: &mut Tally<LEDGER>,
     ) -> Load<D>;
+    /// Tells the tally of energy that was still stored when a contact ended.
+    #[inline(always)]
+    fn release<const LEDGER: bool>(&self, memory: &Self::Memory, tally: &mut Tally<LEDGER>) {
+        let _ = (memory, tally);
+    }
     /// The same contact seen from the second body.
     fn reversed(memory: Self::Memory) -> Self::Memory;
-    /// The load between steps and the energy stored in springs \[J\], for output.
+    /// The load between steps and the energy stored in springs \[J\], for output. The step of the
+    /// meeting is the last one taken.
     fn at_rest(&self, meeting: &Meeting<D>, memory: Self::Memory) -> (Load<D>, f64);
 }
 
@@ -127,11 +133,15 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
     }
 }
 
-/// A spring and dashpot that slides when its force reaches a cap \[DEM-6, Cundall1979\].
+/// A spring and dashpot side by side that slide when their force reaches a cap \[DEM-6,
+/// Cundall1979\].
 ///
-/// The spring advances by half the motion of the step, gives the force, is pulled back to the
-/// cap if it slides, and advances by the other half. Stick, slide and the change between them
-/// are thereby of second order in the step.
+/// The spring advances by half the motion of the step, gives the force, slides back until the
+/// force is at the cap, and advances by the other half. Stick, slide and the change between
+/// them are thereby of second order in the step. Sliding takes motion from spring and dashpot
+/// alike, so that nothing jumps when it begins: with no dashpot this is the reset of the spring
+/// to `cap / k`; with one, a spring that was set to `cap / k` would gain the energy that the
+/// dashpot held back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slider {
     stiffness: f64,
@@ -160,20 +170,39 @@ impl Slider {
             *spring = trial + half;
             return Slid { force: stuck, damped: damping * rate.length_squared() * dt, slid: 0.0 };
         }
-        let force = stuck * (cap / size.sqrt());
-        let middle = if self.stiffness > 0.0 { -(force * (1.0 / self.stiffness)) } else { S::ZERO };
-        // Without a spring all of the motion slides.
-        let slipped = if self.stiffness > 0.0 { trial - middle } else { rate * time };
-        *spring = if self.stiffness > 0.0 { middle + half } else { S::ZERO };
-        Slid { force, damped: 0.0, slid: -force.dot(slipped) }
+        let size = size.sqrt();
+        let direction = stuck * (1.0 / size);
+        // Without spring and dashpot there is nothing to hold back: the cap is zero or unknown.
+        let hold = (self.stiffness + damping / dt).max(f64::MIN_POSITIVE);
+        let slip = (size - cap) / hold;
+        let middle = trial + direction * slip;
+        let left = rate + direction * (slip / dt);
+        *spring = middle + half;
+        let damped = damping * left.length_squared() * dt;
+        // The force while it slides is the mean of this step's and the last one's, so that the
+        // sum of losses and stored energy follows the work to second order.
+        let mean = cap + self.stiffness * (half.dot(direction) + 0.5 * slip);
+        Slid { force: direction * cap, damped, slid: mean * slip }
     }
 
-    /// Force and stored energy of the spring, capped.
-    fn at_rest<S: Linear>(&self, spring: S, rate: S, cap: f64) -> (S, f64) {
+    /// Energy held at the end of a contact. The dashpot then lets the spring go; without one the
+    /// spring has slid back with the cap already.
+    #[inline(always)]
+    fn held<S: Linear>(&self, spring: S) -> f64 {
+        if self.damping > 0.0 { 0.5 * self.stiffness * spring.length_squared() } else { 0.0 }
+    }
+
+    /// Force and stored energy between steps: the second half of the motion slides too.
+    fn at_rest<S: Linear>(&self, spring: S, rate: S, dt: f64, cap: f64) -> (S, f64) {
         let stuck = -(spring * self.stiffness + rate * self.damping);
-        let force = if stuck.length() <= cap { stuck } else { stuck * (cap / stuck.length()) };
-        let elastic = (self.stiffness * spring.length()).min(cap);
-        (force, if self.stiffness > 0.0 { 0.5 * elastic * elastic / self.stiffness } else { 0.0 })
+        let size = stuck.length();
+        if size <= cap {
+            return (stuck, 0.5 * self.stiffness * spring.length_squared());
+        }
+        let direction = stuck * (1.0 / size);
+        let hold = if dt > 0.0 { self.stiffness + 2.0 * self.damping / dt } else { self.stiffness };
+        let held = spring + direction * ((size - cap) / hold.max(f64::MIN_POSITIVE));
+        (direction * cap, 0.5 * self.stiffness * held.length_squared())
     }
 }
 
@@ -229,6 +258,11 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         load
     }
 
+    #[inline(always)]
+    fn release<const LEDGER: bool>(&self, memory: &D::Spin, tally: &mut Tally<LEDGER>) {
+        tally.tangential_damping(|| self.slider(1.0).held(*memory));
+    }
+
     fn reversed(memory: D::Spin) -> D::Spin {
         // n and xi both change sign, so n x xi does not.
         memory
@@ -237,7 +271,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
         let (mut load, energy) = self.normal.at_rest(m, ());
         let cap = self.friction * load.normal.max(0.0);
-        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, cap);
+        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, m.dt, cap);
         load.tangential = force;
         (load, energy + stored)
     }
@@ -282,6 +316,13 @@ impl<D: Dim> ContactLaw<D> for LinearRolling {
         load
     }
 
+    #[inline(always)]
+    fn release<const LEDGER: bool>(&self, [sliding, rolling]: &[D::Spin; 2], tally: &mut Tally<LEDGER>) {
+        let slider = self.frictional.slider(1.0);
+        tally.tangential_damping(|| slider.held(*sliding));
+        tally.rolling(|| slider.held(*rolling));
+    }
+
     fn reversed([sliding, rolling]: [D::Spin; 2]) -> [D::Spin; 2] {
         [sliding, -rolling]
     }
@@ -290,7 +331,7 @@ impl<D: Dim> ContactLaw<D> for LinearRolling {
         let (mut load, energy) = self.frictional.at_rest(m, sliding);
         let cap = self.rolling_friction * load.normal.max(0.0);
         let rate = m.roll * m.effective_radius;
-        let (force, stored) = self.frictional.slider(m.effective_mass).at_rest(rolling, rate, cap);
+        let (force, stored) = self.frictional.slider(m.effective_mass).at_rest(rolling, rate, m.dt, cap);
         load.rolling = force * m.effective_radius;
         (load, energy + stored)
     }

@@ -132,7 +132,9 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
         4 * (self.starts.capacity() + self.partners.capacity())
-            + size_of::<M>() * (self.memory.capacity() + self.wall_memory.capacity())
+            // One by one: without memory a capacity is the largest number there is.
+            + size_of::<M>() * self.memory.capacity()
+            + size_of::<M>() * self.wall_memory.capacity()
             + size_of::<NearWall>() * self.near_walls.capacity()
     }
 }
@@ -178,8 +180,10 @@ pub(crate) fn fill_inboxes<M>(lists: &[BlockList<M>], blocks: Blocks, inboxes: &
             inboxes[receiver].push(Receipt { grain, block: block as u32, place: place as u32 });
         }
     }
-    // Blocks and places rise already; grains first keeps writes in order of memory.
-    inboxes.iter_mut().for_each(|inbox| inbox.sort_by_key(|receipt| receipt.grain));
+    // Grains first keeps writes in order of memory. The key is unique, so that the unstable sort,
+    // which does not allocate, has one outcome.
+    let key = |receipt: &Receipt| (receipt.grain, receipt.block, receipt.place);
+    inboxes.iter_mut().for_each(|inbox| inbox.sort_unstable_by_key(key));
 }
 
 /// Saves the memories that are not fresh, by the stable identifiers of the grains.
@@ -221,8 +225,8 @@ pub(crate) fn restore<M: Copy + Default + PartialEq + Stored>(
     let mut place = vec![u32::MAX; ids.len()];
     let damaged = |found: String| SnapshotError::Damaged { place: "solver/contact pairs".to_owned(), found };
     for (index, &id) in ids.iter().enumerate() {
-        *place.get_mut(id as usize).ok_or_else(|| damaged(format!("grain {id} does not exist")))? =
-            index as u32;
+        let slot = place.get_mut(id as usize).filter(|slot| **slot == u32::MAX);
+        *slot.ok_or_else(|| damaged(format!("grain {id} does not exist or is there twice")))? = index as u32;
     }
     let find = |id: u32| {
         let found = place.get(id as usize).copied().filter(|&index| index != u32::MAX);
@@ -230,15 +234,13 @@ pub(crate) fn restore<M: Copy + Default + PartialEq + Stored>(
     };
     lists.iter_mut().for_each(|list| *list = BlockList::default());
     let pairs: Vec<[u32; 2]> = from.array("contact pairs")?;
-    let memories: Vec<M> =
-        if size_of::<M>() == 0 { Vec::new() } else { from.array_of("contact memories", pairs.len())? };
+    let memories: Vec<M> = from.array_of("contact memories", pairs.len())?;
     for (&[first, second], &memory) in pairs.iter().zip(&memories) {
         let (first, second) = (find(first)?, find(second)?);
         lists[first as usize / blocks.size()].live.push((first, second, memory));
     }
     let walls: Vec<[u32; 2]> = from.array("wall contacts")?;
-    let memories: Vec<M> =
-        if size_of::<M>() == 0 { Vec::new() } else { from.array_of("wall contact memories", walls.len())? };
+    let memories: Vec<M> = from.array_of("wall contact memories", walls.len())?;
     for (&[grain, wall], &memory) in walls.iter().zip(&memories) {
         let grain = find(grain)?;
         lists[grain as usize / blocks.size()].live_walls.push((NearWall { grain, wall }, memory));

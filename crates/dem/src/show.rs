@@ -32,8 +32,9 @@ impl Energies {
     }
 }
 
-/// Grains nearer than this over the mean radius count as connected when the main mass is found.
-const CONNECTED: f64 = 0.01;
+/// Grains nearer than this over the mean radius touch: round-off in the surfaces of a sample that
+/// was placed without overlaps does not part it.
+const TOUCHING: f64 = 1e-6;
 
 impl<D: Dim> Dem<D> {
     /// Energies of the present state.
@@ -85,12 +86,12 @@ impl<D: Dim> Dem<D> {
         })
     }
 
-    /// Which grains belong to the main mass: the largest set of grains connected by contacts or
-    /// by gaps below 1 % of the mean radius \[DEM-20\].
+    /// Which grains belong to the main mass: the largest set of grains connected by contacts
+    /// \[Kumar2014, section 4.2.1\].
     pub fn main_mass(&self) -> Vec<bool> {
         let grains = &self.grains;
         let count = self.len();
-        let gap = CONNECTED * grains.radius.iter().sum::<f64>() / count.max(1) as f64;
+        let gap = TOUCHING * grains.radius.iter().sum::<f64>() / count.max(1) as f64;
         let mut root: Vec<u32> = (0..count as u32).collect();
         self.pairs.visit_listed(&mut |first, second| {
             let distance = (grains.position[first] - grains.position[second]).length();
@@ -228,6 +229,7 @@ impl<D: Dim> Dem<D> {
             }
         }
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
+        list.retain(|s| self.turns() || s.name != "spin");
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
         list
     }
