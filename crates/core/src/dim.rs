@@ -287,7 +287,8 @@ impl Dim for D3 {
         let turned = spring + normal.cross(spring) * twist;
         let flat = turned - normal * turned.dot(normal);
         let flat_length = flat.length();
-        if flat_length > 0.0 { flat * (length / flat_length) } else { DVec3::ZERO }
+        // Compared so that what is not a number stays so instead of becoming zero.
+        if flat_length == 0.0 { DVec3::ZERO } else { flat * (length / flat_length) }
     }
     #[inline(always)]
     fn twist(spin: DVec3, normal: DVec3) -> f64 {

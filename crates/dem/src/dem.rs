@@ -1,10 +1,12 @@
 //! The solver: set-up, the step, and changes between stages.
 
-use crate::contacts::{Contacts, Pairs, Trouble, View};
-use crate::grains::{Grain, Grains, check_finite};
+use crate::contacts::{Contacts, Pairs};
+use crate::grains::{Grain, Grains};
+use crate::kernel::{Trouble, View};
 use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
 use crate::ledger::Losses;
-use crate::material::{MaterialId, Materials, SetupError, Tension};
+use crate::material::{MaterialId, Materials, SetupError};
+use crate::setup::{LeverArm, Options, Setup, check_options};
 use crate::wall::Wall;
 use crate::{lists, motion};
 use granular_core::solver::check_step;
@@ -12,59 +14,6 @@ use granular_core::{
     Blocks, Dim, FieldSink, Limits, Linear, Location, Memory, Section, Shown, SnapshotError, Solver,
     StepError,
 };
-
-/// Where a contact force acts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LeverArm {
-    /// At the middle of the overlap: angular momentum is kept to round-off.
-    #[default]
-    Exact,
-    /// At the radius, as in the thesis \[Kumar2014, eq. 3.43\]: angular momentum is off by the
-    /// overlap over the radius.
-    Radius,
-}
-
-/// Choices of the method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Whether parting contacts may pull.
-    pub tension: Tension,
-    /// Where a contact force acts.
-    pub lever_arm: LeverArm,
-    /// Whether losses of energy are integrated. Costs a few per cent; off unless asked for.
-    pub ledger: bool,
-    /// Steps in the shortest contact time, for the recommended step.
-    pub steps_per_contact: f64,
-    /// Reach of the neighbour lists over the mean diameter.
-    pub skin: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            tension: Tension::Cut,
-            lever_arm: LeverArm::Exact,
-            ledger: false,
-            steps_per_contact: 25.0,
-            skin: 0.25,
-        }
-    }
-}
-
-/// All that makes a simulation.
-#[derive(Clone, Debug)]
-pub struct Setup<D: Dim> {
-    /// Materials of grains and walls.
-    pub materials: Materials,
-    /// Grains; their index is their stable identifier.
-    pub grains: Vec<Grain<D>>,
-    /// Walls.
-    pub walls: Vec<Wall<D>>,
-    /// Gravity \[m/s^2\].
-    pub gravity: D::Vec,
-    /// Choices of the method.
-    pub options: Options,
-}
 
 /// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
 /// sorts at the same places.
@@ -90,7 +39,7 @@ pub struct Dem<D: Dim> {
     pub(crate) initial_energy: Option<f64>,
     pub(crate) steps: u64,
     /// The last step taken \[s\].
-    last_dt: f64,
+    pub(crate) last_dt: f64,
     custom_law: bool,
     skin: f64,
     /// Reach of the present lists \[m\].
@@ -274,7 +223,7 @@ impl<D: Dim> Dem<D> {
 
     /// Takes changed materials; grains begin to turn if they shall. They never stop turning: a
     /// scene may give friction and take it away again.
-    fn take_materials(&mut self, turning: bool) {
+    pub(crate) fn take_materials(&mut self, turning: bool) {
         if self.custom_law || self.pairs.tangential() || !turning {
             self.pairs.update(&self.materials, self.options.tension);
         } else {
@@ -290,7 +239,7 @@ impl<D: Dim> Dem<D> {
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
     /// the skin (a shot) widens the reach so that the list serves for another step.
-    fn list(&mut self, stride: f64, order: Option<&[u32]>) {
+    pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.skin.max(4.0 * stride);
         self.travel = 0.0;
         self.pairs.list(&view_of(&self.grains, &self.walls, &self.options, self.last_dt), self.reach, order);
@@ -321,6 +270,7 @@ impl<D: Dim> Dem<D> {
             self.list(stride, None);
         }
         self.push(dt, stride);
+        self.last_dt = dt;
         let (pairs, gravity) = (self.pairs.as_ref(), self.gravity);
         motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
         self.steps += 1;
@@ -357,7 +307,7 @@ impl<D: Dim> Dem<D> {
         StepError::TooStiff {
             what: format!("overlap over radius at grain {id} in step {}", self.steps),
             value: trouble.overlap / trouble.radius,
-            allowed: crate::contacts::DEEPEST,
+            allowed: crate::kernel::DEEPEST,
             hint: "raise the normal stiffness or lower the speed of the grains".to_owned(),
         }
     }
@@ -373,6 +323,8 @@ fn view_of<'a, D: Dim>(
         position: &grains.position,
         velocity: &grains.velocity,
         spin: &grains.spin,
+        start_velocity: &grains.velocity,
+        start_spin: &grains.spin,
         radius: &grains.radius,
         mass: &grains.mass,
         material: &grains.material,
@@ -405,20 +357,6 @@ fn choose_law<D: Dim>(
     }
 }
 
-fn check_options(options: &Options, gravity_is_finite: bool) -> Result<(), SetupError> {
-    let fits = |value: f64| value.is_finite() && value > 0.0;
-    if !fits(options.steps_per_contact) || options.steps_per_contact < 1.0 {
-        return Err(SetupError::new("steps per contact", options.steps_per_contact, "at least 1"));
-    }
-    if !fits(options.skin) {
-        return Err(SetupError::new("skin", options.skin, "positive and finite"));
-    }
-    if !gravity_is_finite {
-        return Err(SetupError::new("gravity", f64::NAN, "finite"));
-    }
-    Ok(())
-}
-
 impl<D: Dim> Solver for Dem<D> {
     fn name(&self) -> &'static str {
         "dem"
@@ -434,7 +372,6 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
-        self.last_dt = dt;
         // Between two steps of one call, the end of one and the start of the next share a pass.
         let mut opened = false;
         for remaining in (0..steps).rev() {
@@ -470,50 +407,5 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn memory(&self) -> Memory {
         self.report_memory()
-    }
-}
-
-impl<D: Dim> Dem<D> {
-    fn save_state(&self, to: &mut Section) {
-        self.grains.save(to);
-        self.pairs.save(&self.grains, to);
-        to.put_one("steps", self.steps);
-        to.put_one("last step taken", self.last_dt);
-        to.put("gravity", &[self.gravity]);
-        to.put("losses", &self.losses.to_array());
-        to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
-        let open: Vec<u8> = self.walls.iter().map(|wall| u8::from(wall.open)).collect();
-        to.put("open walls", &open);
-        let friction: Vec<f64> =
-            (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
-        to.put("friction", &friction);
-    }
-
-    fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let friction: Vec<f64> = from.array_of("friction", self.materials.len())?;
-        for (k, &value) in friction.iter().enumerate() {
-            self.materials.set_friction(MaterialId(k as u8), value);
-        }
-        // Not asked of the friction: grains go on turning after it was taken away.
-        let turning = !from.array::<D::Spin>("spin")?.is_empty();
-        self.take_materials(turning);
-        self.grains.restore(from)?;
-        self.pairs.restore(from, &self.grains)?;
-        self.steps = from.one("steps")?;
-        self.last_dt = from.one("last step taken")?;
-        self.gravity = from.array_of("gravity", 1)?[0];
-        let losses: Vec<f64> = from.array_of("losses", 5)?;
-        self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
-        let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;
-        self.injected = energy[0];
-        self.initial_energy = self.options.ledger.then_some(energy[1]);
-        let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
-        self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
-        check_finite("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
-        check_finite("gravity", self.gravity.is_finite())?;
-        check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
-        check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
-        self.list(0.0, None);
-        Ok(())
     }
 }

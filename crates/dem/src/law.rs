@@ -24,6 +24,11 @@ pub struct Meeting<D: Dim> {
     pub slip: D::Spin,
     /// Tangential part of the difference of spins \[rad/s\].
     pub roll: D::Spin,
+    /// The slip at the start of the step \[m/s\], with which grains move from the middle of the last
+    /// step to the middle of this one. Springs follow it; `slip` is a prediction, for dashpots only.
+    pub start_slip: D::Spin,
+    /// The roll at the start of the step \[rad/s\].
+    pub start_roll: D::Spin,
     /// Mean spin about the normal \[rad/s\].
     pub twist: f64,
     /// `m1 m2 / (m1 + m2)` \[kg\].
@@ -32,6 +37,8 @@ pub struct Meeting<D: Dim> {
     pub effective_radius: f64,
     /// The step \[s\].
     pub dt: f64,
+    /// The step before \[s\].
+    pub last_dt: f64,
 }
 
 /// What a contact does to the first body; the second gets the opposite.
@@ -136,9 +143,10 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
 /// A spring and dashpot side by side that slide when their force reaches a cap \[DEM-6,
 /// Cundall1979\].
 ///
-/// The spring advances by half the motion of the step, gives the force, slides back until the
-/// force is at the cap, and advances by the other half. Stick, slide and the change between
-/// them are thereby of second order in the step. Sliding takes motion from spring and dashpot
+/// The spring lives at the middle of steps and advances from one to the next by the velocity
+/// between them, the one that moves the grains: the leapfrog, which neither damps nor excites.
+/// (Advanced by the predicted velocity it gains `(w dt)^4 / 8` of its amplitude in each step.)
+/// It slides back until the force is at the cap. Sliding takes motion from spring and dashpot
 /// alike, so that nothing jumps when it begins: with no dashpot this is the reset of the spring
 /// to `cap / k`; with one, a spring that was set to `cap / k` would gain the energy that the
 /// dashpot held back.
@@ -158,16 +166,49 @@ struct Slid<S> {
     slid: f64,
 }
 
+/// How two surfaces pass each other in a step.
+struct Motion<S> {
+    /// At the middle of the step, as predicted.
+    rate: S,
+    /// At its start.
+    start_rate: S,
+    /// Share of the step during which they overlap.
+    presence: f64,
+    /// Whether they meet within the step.
+    enters: bool,
+    dt: f64,
+    last_dt: f64,
+}
+
+impl<S> Motion<S> {
+    #[inline(always)]
+    fn of<D: Dim>(m: &Meeting<D>, rate: S, start_rate: S) -> Self {
+        let enters = m.presence < 1.0 && m.approach > 0.0;
+        Self { rate, start_rate, presence: m.presence, enters, dt: m.dt, last_dt: m.last_dt }
+    }
+
+    /// Times by which the spring advances before and after the load. Before: from the middle of
+    /// the last step to the middle of this one, or of the part in which the surfaces overlap.
+    /// After: nothing, but for surfaces that met within the step, so that the next advance ends
+    /// at the middle of the next step.
+    #[inline(always)]
+    fn advances(&self) -> (f64, f64) {
+        let time = self.presence * self.dt;
+        if self.enters { (0.5 * time, 0.5 * (time - self.dt)) } else { (0.5 * (self.last_dt + time), 0.0) }
+    }
+}
+
 impl Slider {
     #[inline(always)]
-    fn load<S: Linear>(&self, spring: &mut S, rate: S, time: f64, dt: f64, cap: f64) -> Slid<S> {
-        let half = rate * (0.5 * time);
-        let trial = *spring + half;
-        let damping = self.damping * (time / dt);
+    fn load<S: Linear>(&self, spring: &mut S, motion: &Motion<S>, cap: f64) -> Slid<S> {
+        let (before, after) = motion.advances();
+        let (rate, dt) = (motion.rate, motion.dt);
+        let trial = *spring + motion.start_rate * before;
+        let damping = self.damping * motion.presence;
         let stuck = -(trial * self.stiffness + rate * damping);
         let size = stuck.length_squared();
         if size <= cap * cap {
-            *spring = trial + half;
+            *spring = trial + motion.start_rate * after;
             return Slid { force: stuck, damped: damping * rate.length_squared() * dt, slid: 0.0 };
         }
         let size = size.sqrt();
@@ -175,13 +216,12 @@ impl Slider {
         // Without spring and dashpot there is nothing to hold back: the cap is zero or unknown.
         let hold = (self.stiffness + damping / dt).max(f64::MIN_POSITIVE);
         let slip = (size - cap) / hold;
-        let middle = trial + direction * slip;
         let left = rate + direction * (slip / dt);
-        *spring = middle + half;
+        *spring = trial + direction * slip + motion.start_rate * after;
         let damped = damping * left.length_squared() * dt;
         // The force while it slides is the mean of this step's and the last one's, so that the
         // sum of losses and stored energy follows the work to second order.
-        let mean = cap + self.stiffness * (half.dot(direction) + 0.5 * slip);
+        let mean = cap + 0.5 * self.stiffness * (motion.start_rate.dot(direction) * before + slip);
         Slid { force: direction * cap, damped, slid: mean * slip }
     }
 
@@ -192,17 +232,14 @@ impl Slider {
         if self.damping > 0.0 { 0.5 * self.stiffness * spring.length_squared() } else { 0.0 }
     }
 
-    /// Force and stored energy between steps: the second half of the motion slides too.
-    fn at_rest<S: Linear>(&self, spring: S, rate: S, dt: f64, cap: f64) -> (S, f64) {
+    /// Force and stored energy between steps: the spring is half a step behind, and what the next
+    /// step will slide is still stored.
+    fn at_rest<S: Linear>(&self, spring: S, rate: S, last_dt: f64, cap: f64) -> (S, f64) {
+        let spring = spring + rate * (0.5 * last_dt);
         let stuck = -(spring * self.stiffness + rate * self.damping);
         let size = stuck.length();
-        if size <= cap {
-            return (stuck, 0.5 * self.stiffness * spring.length_squared());
-        }
-        let direction = stuck * (1.0 / size);
-        let hold = if dt > 0.0 { self.stiffness + 2.0 * self.damping / dt } else { self.stiffness };
-        let held = spring + direction * ((size - cap) / hold.max(f64::MIN_POSITIVE));
-        (direction * cap, 0.5 * self.stiffness * held.length_squared())
+        let force = if size <= cap { stuck } else { stuck * (cap / size) };
+        (force, 0.5 * self.stiffness * spring.length_squared())
     }
 }
 
@@ -251,7 +288,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         let mut load: Load<D> = self.normal.load(m, &mut (), tally);
         let cap = self.friction * load.normal.max(0.0);
         *memory = D::follow(*memory, m.normal, m.twist * m.dt);
-        let slid = self.slider(m.effective_mass).load(memory, m.slip, m.presence * m.dt, m.dt, cap);
+        let slid = self.slider(m.effective_mass).load(memory, &Motion::of(m, m.slip, m.start_slip), cap);
         tally.tangential_damping(|| slid.damped);
         tally.sliding(|| slid.slid);
         load.tangential = slid.force;
@@ -271,7 +308,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
         let (mut load, energy) = self.normal.at_rest(m, ());
         let cap = self.friction * load.normal.max(0.0);
-        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, m.dt, cap);
+        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, m.last_dt, cap);
         load.tangential = force;
         (load, energy + stored)
     }
@@ -309,8 +346,8 @@ impl<D: Dim> ContactLaw<D> for LinearRolling {
         let mut load: Load<D> = self.frictional.load(m, sliding, tally);
         let cap = self.rolling_friction * load.normal.max(0.0);
         *rolling = D::follow(*rolling, m.normal, m.twist * m.dt);
-        let rate = m.roll * m.effective_radius;
-        let slid = self.frictional.slider(m.effective_mass).load(rolling, rate, m.presence * m.dt, m.dt, cap);
+        let motion = Motion::of(m, m.roll * m.effective_radius, m.start_roll * m.effective_radius);
+        let slid = self.frictional.slider(m.effective_mass).load(rolling, &motion, cap);
         tally.rolling(|| slid.damped + slid.slid);
         load.rolling = slid.force * m.effective_radius;
         load
@@ -331,7 +368,7 @@ impl<D: Dim> ContactLaw<D> for LinearRolling {
         let (mut load, energy) = self.frictional.at_rest(m, sliding);
         let cap = self.rolling_friction * load.normal.max(0.0);
         let rate = m.roll * m.effective_radius;
-        let (force, stored) = self.frictional.slider(m.effective_mass).at_rest(rolling, rate, m.dt, cap);
+        let (force, stored) = self.frictional.slider(m.effective_mass).at_rest(rolling, rate, m.last_dt, cap);
         load.rolling = force * m.effective_radius;
         (load, energy + stored)
     }

@@ -35,24 +35,28 @@
 mod contacts;
 mod dem;
 mod grains;
+mod kernel;
 pub mod law;
 mod ledger;
 mod limits;
 mod lists;
 pub mod material;
 mod motion;
+mod setup;
 mod show;
 #[cfg(feature = "serde")]
 pub mod spec;
+mod state;
 pub mod wall;
 
 pub use contacts::{Contact, Partner};
-pub use dem::{Dem, LeverArm, Options, Setup};
+pub use dem::Dem;
 pub use grains::Grain;
 pub use law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;
 pub use material::{Material, MaterialId, Materials, PairProperties, SetupError, Tension};
+pub use setup::{LeverArm, Options, Setup};
 pub use show::Energies;
 pub use wall::{Shape, Wall};
 

@@ -1,7 +1,8 @@
 //! What bounds the step, and what the scene costs in memory.
 
-use crate::dem::{Dem, LeverArm};
+use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
+use crate::setup::LeverArm;
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
 
 /// Overlap over radius above which an impact is called too soft.
@@ -114,7 +115,7 @@ impl<D: Dim> Dem<D> {
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
-            allowed: 100.0 * crate::contacts::DEEPEST,
+            allowed: 100.0 * crate::kernel::DEEPEST,
             unit: "% of the radius",
             refuses: true,
             why: format!("two grains that meet at {fastest:.3} m/s; raise the normal stiffness"),

@@ -4,7 +4,8 @@
 //! \[DEM-13\]. Pairs that do not touch add nothing to any sum: a list may be rebuilt at any time
 //! without a change of bits.
 
-use crate::contacts::{Receipt, View};
+use crate::contacts::Receipt;
+use crate::kernel::View;
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored};
 use std::ops::Range;

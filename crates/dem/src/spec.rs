@@ -1,12 +1,12 @@
 //! What a scene says of this method (feature `serde`).
 
-use crate::dem::{LeverArm, Options};
 use crate::material::{Material, Tension};
+use crate::setup::{LeverArm, Options};
 use granular_core::units::{Density, Length, Stiffness, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Discrete element method.
+/// The discrete element method; all keys may be left out: `Dem(())`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DemSpec {
@@ -14,15 +14,16 @@ pub struct DemSpec {
     pub tension: TensionSpec,
     /// Where contact forces act.
     pub lever_arm: LeverArmSpec,
-    /// Steps in the shortest contact time; sets the step where a stage does not.
+    /// Steps in the shortest contact time, 1 or more; this sets the step where `time_step` does not.
     pub steps_per_contact: f64,
-    /// Reach of the neighbour lists over the mean diameter. Changes the speed, never the result.
+    /// How far beyond contact neighbour lists reach, over the mean diameter. It changes the speed,
+    /// never the forces.
     pub skin: f64,
-    /// Step; by default from `steps_per_contact`.
+    /// The step; by default it follows from `steps_per_contact`.
     pub time_step: Option<Time>,
 }
 
-/// Treatment of tension.
+/// Whether contacts that part may pull, which a dashpot does at the end of an impact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum TensionSpec {
     /// Contacts never attract.
@@ -32,7 +33,7 @@ pub enum TensionSpec {
     Kept,
 }
 
-/// Lever arms.
+/// Where contact forces act on the grains, which decides their torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum LeverArmSpec {
     /// At the middle of the overlap: angular momentum is kept to round-off.
@@ -78,24 +79,24 @@ impl DemSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
-    /// Density of the grains; a wall needs none.
+    /// Density of the grains; a material of walls needs none.
     #[serde(default = "default_density")]
     pub density: Density,
     /// Normal stiffness between two bodies of this material. Between two materials springs act
     /// in series.
     pub normal_stiffness: Stiffness,
-    /// Tangential over normal stiffness.
+    /// Tangential over normal stiffness, 0 or more.
     #[serde(default = "default_stiffness_ratio")]
     pub stiffness_ratio: f64,
     /// Coefficient of restitution of a normal impact, above 0 and at most 1. Between two
     /// materials the lower one holds.
     pub restitution: f64,
-    /// Tangential over normal damping coefficient.
+    /// Tangential over normal damping coefficient, 0 or more.
     #[serde(default = "default_damping_ratio")]
     pub damping_ratio: f64,
-    /// Coulomb friction. Between two materials the lower one holds.
+    /// Coefficient of Coulomb friction, 0 or more. Between two materials the lower one holds.
     pub friction: f64,
-    /// Rolling resistance. Between two materials the lower one holds.
+    /// Coefficient of rolling resistance, 0 or more. Between two materials the lower one holds.
     #[serde(default)]
     pub rolling_friction: f64,
 }
@@ -132,12 +133,13 @@ impl From<MaterialSpec> for Material {
 pub struct GrainSpec {
     /// Centre, one length per axis.
     pub position: Vec<Length>,
-    /// Radius.
+    /// Radius, above 0.
     pub radius: Length,
-    /// Velocity, one per axis; at rest by default.
+    /// Velocity, one component per axis; at rest by default.
     #[serde(default)]
     pub velocity: Vec<granular_core::units::Velocity>,
-    /// Angular velocity: about z in the plane, three components in space; none by default.
+    /// Angular velocity: one value, about z, in the plane and three components in space; none by
+    /// default.
     #[serde(default)]
     pub spin: Vec<granular_core::units::AngularVelocity>,
     /// Name of its material.

@@ -60,20 +60,30 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
     let steps = steps(scene, model, &limits);
     let mut problems = Vec::new();
     if let Some(largest) = limits.largest_allowed() {
-        for (stage, &dt) in scene.stages.iter().zip(&steps) {
+        let solver = scene.solvers.keys().next().map_or("", String::as_str);
+        for (k, (stage, &dt)) in scene.stages.iter().zip(&steps).enumerate() {
+            let path = match stage.time_step {
+                Some(_) => format!("stages.{k}.time_step"),
+                None if model.time_step.is_some() => format!("solvers.{solver}.time_step"),
+                None => format!("solvers.{solver}.steps_per_contact"),
+            };
             if dt > largest.dt {
                 problems.push(format!(
-                    "the step of stage `{}`, {dt:.4e} s, is above the limit of {} {:.4e} s ({}); leave out \
-                     `time_step` or set it below",
-                    stage.name, largest.name, largest.dt, largest.why
+                    "`{path}`: a step of {dt:.4e} s in stage `{}`; allowed: at most {:.4e} s, the limit of {} \
+                     ({}); leave the key out or take a shorter step",
+                    stage.name, largest.dt, largest.name, largest.why
                 ));
             }
         }
     }
     for bound in limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds()) {
         problems.push(format!(
-            "{} is {:.4} {} where {} is allowed: {}",
-            bound.name, bound.value, bound.unit, bound.allowed, bound.why
+            "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
+            bound.name,
+            bound.value,
+            bound.allowed,
+            bound.why,
+            unit = bound.unit
         ));
     }
     (limits, steps, problems)
@@ -127,7 +137,17 @@ fn seconds_per_step(model: &mut Model, dt: f64) -> f64 {
     begun.elapsed().as_secs_f64() / f64::from(steps)
 }
 
+/// A refusal that names the scene.
+pub(crate) fn refusal(scene: &str, problems: &[String]) -> Failure {
+    Failure::Refused(problems.iter().map(|problem| format!("{scene}: {problem}")).collect())
+}
+
 impl Report {
+    /// The failure that the problems are.
+    pub fn refusal(&self) -> Failure {
+        refusal(&self.scene, &self.problems)
+    }
+
     /// The report as JSON.
     pub fn to_json(&self) -> Value {
         let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);
@@ -197,9 +217,8 @@ impl fmt::Display for Report {
         for left_out in &self.memory.left_out {
             writeln!(f, "  {left_out}")?;
         }
-        for problem in &self.problems {
-            writeln!(f, "\nrefused: {problem}")?;
-        }
-        if self.problems.is_empty() { writeln!(f, "\nthe scene can be run") } else { Ok(()) }
+        // What the problems are, the failure says.
+        let verdict = if self.problems.is_empty() { "the scene can be run" } else { "the scene is refused" };
+        writeln!(f, "\n{verdict}")
     }
 }

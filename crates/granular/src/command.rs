@@ -1,13 +1,18 @@
 //! Verbs and flags.
 
+mod bench;
+mod validate;
+
 use clap::{Args, Parser, Subcommand};
 use granular::failure::Failure;
 use granular::run::Interrupt;
 use granular::scene_file::SceneText;
 use granular::{check, folder, run};
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Granular flows from one scene file.
 ///
@@ -73,6 +78,11 @@ enum Verb {
         /// Run folder.
         folder: PathBuf,
     },
+    /// Compare the program with known answers; exit code 1 when a required one is missed.
+    Validate(validate::Validate),
+    /// Measure error against run time, or speed.
+    #[command(subcommand)]
+    Bench(bench::Bench),
     /// Tell about this program, a run folder, or all that a scene can show.
     Info {
         /// Run folder or scene file.
@@ -95,13 +105,19 @@ impl Command {
         if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
             eprintln!("warning: {error}; the default number of threads is used");
         }
+        let checks = matches!(self.verb, Verb::Check { .. });
         match self.verb.execute(&self.common) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
-                if self.common.json {
-                    println!("{}", pretty(&failure_json(&failure)));
+                // A failed validation has printed its rows, and a check its report, and they say
+                // what failed.
+                let reported = matches!(failure, Failure::Invalid(_))
+                    || checks && matches!(failure, Failure::Refused(_));
+                if self.common.json && !reported {
+                    print(&(pretty(&failure_json(&failure)) + "\n"));
                 }
-                eprintln!("{failure}");
+                // Nobody may be listening; the exit code says it too.
+                let _ = writeln!(std::io::stderr(), "{failure}");
                 ExitCode::from(failure.code())
             }
         }
@@ -115,7 +131,7 @@ impl Verb {
             Self::Check { scene, edits } => {
                 let report = check::check(&read(&scene, &edits)?)?;
                 show(common, &report.to_json(), || report.to_string());
-                if report.problems.is_empty() { Ok(()) } else { Err(Failure::Refused(report.problems)) }
+                if report.problems.is_empty() { Ok(()) } else { Err(report.refusal()) }
             }
             Self::Run { scene, edits, out, force } => {
                 let text = read(&scene, &edits)?;
@@ -137,6 +153,8 @@ impl Verb {
                 });
                 Ok(())
             }
+            Self::Bench(verb) => verb.execute(common),
+            Self::Validate(verb) => verb.execute(common),
             Self::Info { path } => info(common, path.as_deref()),
         }
     }
@@ -168,18 +186,39 @@ fn interrupt() -> Result<Interrupt, Failure> {
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         let number = interrupt.signal.clone();
         let flag = interrupt.raised.clone();
-        let register = signal_hook::flag::register(signal, flag)
-            .and_then(|_| signal_hook::flag::register_usize(signal, number, signal as usize));
+        // The number first: who sees the flag must find the number.
+        let register = signal_hook::flag::register_usize(signal, number, signal as usize)
+            .and_then(|_| signal_hook::flag::register(signal, flag));
         register.map_err(|error| Failure::io("signals", error))?;
     }
+    // Without a handler a limit on the size of files (`ulimit -f`) kills the process; with one the
+    // write fails, which is told.
+    let too_large = signal_hook::flag::register(FILE_TOO_LARGE, Arc::default());
+    too_large.map_err(|error| Failure::io("signals", error))?;
     Ok(interrupt)
 }
 
+/// SIGXFSZ, of the same number on Linux (but for MIPS), macOS and the BSDs.
+const FILE_TOO_LARGE: i32 = 25;
+
 fn show(common: &Common, value: &Value, text: impl FnOnce() -> String) {
     if common.json {
-        println!("{}", pretty(value));
+        print(&(pretty(value) + "\n"));
     } else {
-        print!("{}", text());
+        print(&text());
+    }
+}
+
+/// Prints a result. That the reader has left, as `head` does, is no failure; a full disk is.
+fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush())
+        && error.kind() != std::io::ErrorKind::BrokenPipe
+    {
+        let failure = Failure::io("standard output", error);
+        let _ = writeln!(std::io::stderr(), "{failure}");
+        // Printing is the last thing that any verb does.
+        std::process::exit(failure.code().into());
     }
 }
 
@@ -240,18 +279,19 @@ fn new(template: Option<&str>) -> Result<(), Failure> {
     let Some(name) = template else {
         for (name, text) in templates {
             let title = text.lines().next().unwrap_or_default().trim_start_matches("// ");
-            println!("{name:<24} {title}");
+            print(&format!("{name:<24} {title}\n"));
         }
         return Ok(());
     };
     match templates.iter().find(|(known, _)| *known == name) {
         Some((_, text)) => {
-            print!("{text}");
+            print(text);
             Ok(())
         }
         None => {
             let known: Vec<&str> = templates.iter().map(|(name, _)| *name).collect();
-            Err(Failure::Io(format!("there is no template `{name}`; known: {}", known.join(", "))))
+            let known = known.join(", ");
+            Err(Failure::io("new", format!("there is no template `{name}`; allowed: {known}")))
         }
     }
 }

@@ -50,6 +50,15 @@ impl Failure {
     pub fn io(place: impl fmt::Display, reason: impl fmt::Display) -> Self {
         Self::Io(format!("{place}: {reason}"))
     }
+
+    /// The same failure, told what was tried.
+    #[must_use]
+    pub(crate) fn with_context(self, what: impl fmt::Display) -> Self {
+        match self {
+            Self::Io(reason) => Self::Io(format!("{what}: {reason}")),
+            other => other,
+        }
+    }
 }
 
 impl fmt::Display for Failure {

@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 /// File that marks a run folder.
 const RUN_FILE: &str = "run.json";
 const SCENE_FILE: &str = "scene.ron";
+const SNAPSHOTS: &str = "snapshots";
+/// Names in a run folder that no output may take.
+pub(crate) const RESERVED: [&str; 3] = [RUN_FILE, SCENE_FILE, SNAPSHOTS];
 
 /// A folder that holds the resolved scene, `run.json`, tables, fields, figures and snapshots.
 #[derive(Clone, Debug)]
@@ -23,15 +26,22 @@ impl RunFolder {
     /// # Errors
     /// When something is in the way, or the folder cannot be written.
     pub fn create(path: &Path, scene: &str, force: bool) -> Result<Self, Failure> {
-        let occupied =
-            path.exists() && fs::read_dir(path).map_or(true, |mut entries| entries.next().is_some());
+        if path.exists() && !path.is_dir() {
+            return Err(Failure::io(
+                path.display(),
+                "is a file; a run needs a folder: choose one with --out",
+            ));
+        }
+        // A run that was killed before it wrote its first file leaves a part of that.
+        let litter = format!("{RUN_FILE}.tmp");
+        let entries = fs::read_dir(path).into_iter().flatten().flatten();
+        let occupied = entries.into_iter().any(|entry| entry.file_name() != litter.as_str());
         if occupied {
             let is_run = path.join(RUN_FILE).is_file();
             if !is_run {
-                return Err(Failure::io(
-                    path.display(),
-                    "is not empty and no run folder; choose another with --out",
-                ));
+                let reason = "is not empty and holds no run (no run.json), so it is left alone, also with \
+                              --force; choose another folder with --out";
+                return Err(Failure::io(path.display(), reason));
             }
             if !force {
                 let reason = "holds a run already; --force replaces it, --out chooses another folder";
@@ -39,8 +49,11 @@ impl RunFolder {
             }
             fs::remove_dir_all(path).map_err(|error| Failure::io(path.display(), error))?;
         }
-        fs::create_dir_all(path.join("snapshots")).map_err(|error| Failure::io(path.display(), error))?;
+        fs::create_dir_all(path).map_err(|error| Failure::io(path.display(), error))?;
         let folder = Self { path: path.to_path_buf() };
+        // This file marks the folder as a run, so it comes first: what is killed from here on can
+        // be resumed or replaced.
+        folder.set_facts(&json!({ "exit": "running" }))?;
         folder.write(SCENE_FILE, scene)?;
         Ok(folder)
     }
@@ -50,10 +63,19 @@ impl RunFolder {
     /// # Errors
     /// When it is none.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        if path.join(SCENE_FILE).is_file() && path.join(RUN_FILE).is_file() {
-            return Ok(Self { path: path.to_path_buf() });
+        let lacks: Vec<&str> =
+            [SCENE_FILE, RUN_FILE].into_iter().filter(|name| !path.join(name).is_file()).collect();
+        match (path.is_dir(), lacks.as_slice()) {
+            (true, []) => Ok(Self { path: path.to_path_buf() }),
+            (true, _) => Err(Failure::io(
+                path.display(),
+                format!("is no run folder: it lacks {}", lacks.join(" and ")),
+            )),
+            (false, _) if path.exists() => {
+                Err(Failure::io(path.display(), "is a file; the folder of a run is expected"))
+            }
+            (false, _) => Err(Failure::io(path.display(), "there is no such folder")),
         }
-        Err(Failure::io(path.display(), "is no run folder: it lacks scene.ron or run.json"))
     }
 
     /// The folder.
@@ -68,7 +90,13 @@ impl RunFolder {
 
     /// Where snapshots are kept.
     pub fn snapshots(&self) -> SnapshotStore {
-        SnapshotStore::new(self.path.join("snapshots"))
+        SnapshotStore::new(self.path.join(SNAPSHOTS))
+    }
+
+    /// Whether any snapshot was taken, readable or not.
+    pub fn has_snapshots(&self) -> bool {
+        let names = fs::read_dir(self.path.join(SNAPSHOTS)).into_iter().flatten().flatten();
+        names.into_iter().any(|entry| entry.file_name().to_string_lossy().ends_with(".bin"))
     }
 
     /// What is known of the run.
@@ -100,13 +128,13 @@ impl RunFolder {
     /// # Errors
     /// When a file cannot be read.
     pub fn checksums(&self) -> Result<Value, Failure> {
-        let mut sums = serde_json::Map::new();
+        let mut sums = std::collections::BTreeMap::new();
         let mut folders = vec![self.path.clone()];
         while let Some(folder) = folders.pop() {
             let entries = fs::read_dir(&folder).map_err(|error| Failure::io(folder.display(), error))?;
             for path in entries.filter_map(|entry| entry.ok().map(|entry| entry.path())) {
                 let name = path.strip_prefix(&self.path).unwrap_or(&path).display().to_string();
-                if path.is_dir() && name != "snapshots" {
+                if path.is_dir() && name != SNAPSHOTS {
                     folders.push(path);
                 } else if path.is_file() && name != RUN_FILE {
                     let sum = checksum(&path).map_err(|error| Failure::io(path.display(), error))?;

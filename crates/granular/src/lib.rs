@@ -3,6 +3,7 @@
 //! A [`scene::Scene`] is read from RON by [`scene_file`], checked and built into a
 //! [`model::Model`], and run stage by stage.
 
+pub mod bench;
 pub mod check;
 pub mod failure;
 pub mod figures;
@@ -13,6 +14,7 @@ mod progress;
 pub mod run;
 pub mod scene;
 pub mod scene_file;
+pub mod validate;
 
 /// Scenes to start from: name and text. The first line of each is a comment that says what it is.
 pub const TEMPLATES: &[(&str, &str)] = &[

@@ -1,9 +1,10 @@
 //! From a scene to a simulation: all checks that need no step, then the build.
 
+mod outputs;
 mod sample;
 mod walls;
 
-use crate::scene::{Change, Dimension, End, FigureSpec, Scene, SolverSpec, Writer};
+use crate::scene::{Change, Dimension, End, FigureSpec, Sample, Scene, SolverSpec, Writer};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Acceleration, Measured, Unit};
 use granular_core::{D2, D3, Dim, Simulation, Solver, Vector};
@@ -11,6 +12,7 @@ use granular_dem::spec::DemSpec;
 use granular_dem::{Dem, MaterialId, Materials, Setup};
 use std::any::Any;
 use std::collections::BTreeMap;
+use walls::Beside;
 
 /// A scene that was checked and built.
 #[derive(Debug)]
@@ -82,20 +84,19 @@ impl Problems {
 #[derive(Debug, Default)]
 pub(crate) struct NamedMaterials {
     pub(crate) list: Materials,
-    ids: BTreeMap<String, MaterialId>,
+    /// None for a material that was refused, so that its users are not blamed too.
+    ids: BTreeMap<String, Option<MaterialId>>,
 }
 
 impl NamedMaterials {
     fn of(scene: &Scene, problems: &mut Problems) -> Self {
         let mut named = Self::default();
         for (name, &spec) in &scene.materials {
-            match named.list.add(spec.into()) {
-                Ok(id) => _ = named.ids.insert(name.clone(), id),
-                Err(error) => {
-                    let key = error.what.replace(' ', "_");
-                    problems.add(format!("materials.{name}.{key}"), error.value, error.allowed, "");
-                }
-            }
+            let added = named.list.add(spec.into()).map_err(|error| {
+                let key = error.what.replace(' ', "_");
+                problems.add(format!("materials.{}.{key}", quoted(name)), error.value, error.allowed, "");
+            });
+            named.ids.insert(name.clone(), added.ok());
         }
         named
     }
@@ -105,15 +106,16 @@ impl NamedMaterials {
         if found.is_none() {
             let known: Vec<&str> = self.ids.keys().map(String::as_str).collect();
             let hint = nearest(name, known.iter().copied());
-            problems.add(
-                path,
-                format!("`{name}`, which is no material of this scene"),
-                known.join(", "),
-                hint,
-            );
+            let allowed = format!("a material of this scene: {}", known.join(", "));
+            problems.add(path, format!("`{name}`, which is no material of this scene"), allowed, hint);
         }
-        found
+        found.flatten()
     }
+}
+
+/// A key as a scene path writes it: one with a dot needs quotes.
+fn quoted(key: &str) -> String {
+    if key.contains(['.', '=', '[']) { format!("\"{key}\"") } else { key.to_owned() }
 }
 
 /// "did you mean" for the nearest of some names; empty when none is near.
@@ -140,6 +142,7 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
 fn build_in<D: Dim>(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     let mut problems = Problems::default();
     check_frame(scene, &mut problems);
+    outputs::check_files(scene, &mut problems);
     let gravity = if scene.gravity.is_empty() {
         Some(D::Vec::default())
     } else {
@@ -148,7 +151,12 @@ fn build_in<D: Dim>(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     let materials = NamedMaterials::of(scene, &mut problems);
     let sample = sample::grains::<D>(&scene.sample, &materials, &mut problems);
     let column = sample.as_ref().and_then(|sample| sample.column);
-    let walls = walls::walls::<D>(&scene.walls, column, &materials, &mut problems);
+    // A column that cannot be built has been blamed already; the walls beside it are not.
+    let beside = match (&sample, &scene.sample) {
+        (None, Sample::Column { .. }) => Beside::Unknown,
+        _ => column.map_or(Beside::Nothing, Beside::Column),
+    };
+    let walls = walls::walls::<D>(&scene.walls, beside, &materials, &mut problems);
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, walls.list.iter().map(|wall| wall.name.as_str()).collect(), &mut problems);
     let spec = solver_spec(scene, &mut problems);
@@ -167,7 +175,7 @@ fn build_in<D: Dim>(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         let path = format!("solvers.{}", scene.solvers.keys().next().map_or("", String::as_str));
         vec![SceneProblem::at_path(path, error.to_string(), error.allowed, "")]
     })?;
-    check_probes(scene, &dem, &mut problems);
+    outputs::check_names(scene, &dem, &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
     }
@@ -193,6 +201,12 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
             End::For(time) => ("end", time),
             End::Quiet { within, .. } => ("end.within", within),
         };
+        if let End::Quiet { kinetic_over_potential: ratio, .. } = stage.end
+            && ratio <= 0.0
+        {
+            let path = format!("stages.{k}.end.kinetic_over_potential");
+            problems.add(path, ratio, "above 0, such as 1e-6", "");
+        }
         if time.value() <= 0.0 {
             problems.add(format!("stages.{k}.{key}"), time, "a positive time", "");
         }
@@ -208,37 +222,9 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
             problems.add(format!("stages.{k}.time_step"), step, "a positive time", "");
         }
     }
-    for (k, output) in scene.outputs.iter().enumerate() {
-        let (positive, shown) = match output.every {
-            crate::scene::EverySpec::Time(time) => (time.value() > 0.0, time.to_string()),
-            crate::scene::EverySpec::Steps(steps) => (steps > 0, steps.to_string()),
-        };
-        if !positive {
-            problems.add(format!("outputs.{k}.every"), shown, "a positive interval", "");
-        }
-        let path = output.write.path();
-        if scene.outputs[..k].iter().any(|other| other.write.path() == path) {
-            problems.add(
-                format!("outputs.{k}.write.path"),
-                format!("`{path}` again"),
-                "a file of its own",
-                "",
-            );
-        }
-        if !is_plain_path(path) {
-            let allowed = "a relative path inside the run folder";
-            problems.add(format!("outputs.{k}.write.path"), format!("`{path}`"), allowed, "");
-        }
-    }
     if scene.snapshot_every.value() <= 0.0 {
         problems.add("snapshot_every", scene.snapshot_every, "a positive time", "");
     }
-}
-
-/// Whether a path stays inside the run folder.
-fn is_plain_path(path: &str) -> bool {
-    use std::path::{Component, Path};
-    !path.is_empty() && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
 }
 
 fn check_wall_names(scene: &Scene, names: Vec<&str>, problems: &mut Problems) {
@@ -300,13 +286,13 @@ fn actions<D: Dim>(
     problems: &mut Problems,
 ) -> Vec<Vec<Action>> {
     for (path, _, stage) in openings {
-        if !scene.stages.iter().any(|other| other.name == *stage) {
+        if !scene.stages.is_empty() && !scene.stages.iter().any(|other| other.name == *stage) {
             let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
             let hint = nearest(stage, known.iter().copied());
             problems.add(
                 format!("{path}.opens"),
-                format!("`{stage}`"),
-                format!("a stage: {}", known.join(", ")),
+                format!("`{stage}`, which is no stage of this scene"),
+                format!("a stage of this scene: {}", known.join(", ")),
                 hint,
             );
         }
@@ -365,52 +351,5 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
         }
         Action::StopMotion => dem.stop_motion(),
         Action::Wall(name, open) => _ = dem.set_open(name, *open),
-    }
-}
-
-/// Whether outputs and figures ask only for what there is.
-fn check_probes(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
-    use granular_core::ShownAs;
-    let shown = solver.shown();
-    for (k, output) in scene.outputs.iter().enumerate() {
-        let (key, names, kind) = match &output.write {
-            Writer::Table { probes, .. } => ("probes", probes, ShownAs::Number),
-            Writer::Fields { fields, .. } | Writer::Hdf5 { fields, .. } => ("fields", fields, ShownAs::Field),
-            Writer::Contacts { fields, .. } => ("fields", fields, ShownAs::Link),
-        };
-        let known: Vec<&str> = shown.iter().filter(|s| s.kind == kind).map(|s| s.name.as_str()).collect();
-        for (n, name) in names.iter().enumerate() {
-            if !known.contains(&name.as_str()) {
-                let path = format!("outputs.{k}.write.{key}.{n}");
-                let hint = nearest(name, known.iter().copied());
-                problems.add(path, format!("`{name}`, which nothing shows"), known.join(", "), hint);
-            }
-        }
-    }
-    check_figures(scene, problems);
-}
-
-/// Whether figures draw from outputs that hold what they need.
-fn check_figures(scene: &Scene, problems: &mut Problems) {
-    for (k, figure) in scene.figures.iter().enumerate() {
-        let need = figure.needs();
-        let found = scene.outputs.iter().find(|output| output.write.path() == need.output);
-        let place = format!("figures.{k}.{}", need.key);
-        let Some(output) = found else {
-            let known: Vec<&str> = scene.outputs.iter().map(|output| output.write.path()).collect();
-            let hint = nearest(need.output, known.iter().copied());
-            problems.add(place, format!("`{}`, which no output writes", need.output), known.join(", "), hint);
-            continue;
-        };
-        for name in need.names.iter().filter(|name| !output.write.names().iter().any(|other| other == *name))
-        {
-            let hint = format!("add \"{name}\" to the output `{}`", need.output);
-            problems.add(place.clone(), format!("an output without `{name}`"), need.names.join(", "), hint);
-        }
-        if let Some(stage) = need.stage.filter(|s| !scene.stages.iter().any(|other| other.name == *s)) {
-            let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
-            let hint = nearest(stage, known.iter().copied());
-            problems.add(format!("figures.{k}.stage"), format!("`{stage}`"), known.join(", "), hint);
-        }
     }
 }

@@ -208,19 +208,21 @@ impl Observer for Rest {
 
 /// Stops the run loop when a snapshot is due; the loop takes it and goes on.
 pub(crate) struct SnapshotTimer {
-    due: Arc<AtomicBool>,
+    /// Step of the snapshot before, or of the start: there must be something new to save, or a
+    /// short interval would stop the loop for ever.
+    before: u64,
 }
 
 impl SnapshotTimer {
-    pub(crate) fn scheduled(interval: Duration, due: Arc<AtomicBool>) -> Scheduled {
-        Scheduled::new("snapshot timer", Every::Wall(interval), Box::new(Self { due }))
+    pub(crate) fn scheduled(interval: Duration, before: u64) -> Scheduled {
+        Scheduled::new("snapshot timer", Every::Wall(interval), Box::new(Self { before }))
     }
 }
 
 impl Observer for SnapshotTimer {
-    fn observe(&mut self, _: &Simulation) -> Result<Flow, ObserverError> {
-        self.due.store(true, Ordering::Relaxed);
-        Ok(Flow::Stop)
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let new = simulation.clock().step() > self.before;
+        Ok(if new { Flow::Stop } else { Flow::Continue })
     }
 }
 
@@ -229,4 +231,47 @@ pub(crate) fn number_of(simulation: &Simulation, name: &str) -> Option<f64> {
     let mut numbers = Numbers::wanting([name]);
     simulation.solver().show(&mut numbers);
     numbers.get(name)
+}
+
+/// One temporal `.vtkhdf` file.
+#[cfg(feature = "hdf5")]
+mod hdf5 {
+    use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
+    use granular_io::{Frame, VtkHdfPoints};
+    use std::path::{Path, PathBuf};
+
+    pub(super) struct Hdf5Observer {
+        path: PathBuf,
+        fields: Vec<String>,
+        file: Option<VtkHdfPoints>,
+    }
+
+    impl Hdf5Observer {
+        pub(super) fn new(stem: &Path, fields: &[String], fresh: bool) -> Result<Self, Failure> {
+            let path = stem.with_extension("vtkhdf");
+            let file = if fresh { Some(VtkHdfPoints::create(&path)?) } else { None };
+            Ok(Self { path, fields: fields.to_vec(), file })
+        }
+    }
+
+    impl Observer for Hdf5Observer {
+        fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+            let mut frame = Frame::wanting(self.fields.iter().map(String::as_str));
+            simulation.solver().show(&mut frame);
+            if let Some(file) = &mut self.file {
+                file.append(&simulation.solver().location(), &frame, simulation.clock().time())?;
+            }
+            Ok(Flow::Continue)
+        }
+
+        fn save(&self, to: &mut Section) {
+            to.put_one("steps", self.file.as_ref().map_or(0, VtkHdfPoints::steps) as u64);
+        }
+
+        fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+            let steps: u64 = from.one("steps")?;
+            self.file = Some(VtkHdfPoints::reopen_at(&self.path, steps as usize)?);
+            Ok(())
+        }
+    }
 }

@@ -5,6 +5,12 @@ use granular_core::{Every, Flow, Numbers, Observer, ObserverError, Scheduled, Si
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
+/// Writes a line to standard error. What is said there is a courtesy: that nobody listens any more
+/// does not stop a run, as `eprintln!` would.
+pub(crate) fn say(line: std::fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 /// What the progress line says of the stage under way.
 #[derive(Clone, Debug)]
 pub(crate) struct StageLine {
@@ -52,7 +58,6 @@ impl Observer for Progress {
             rate * size as f64,
             duration(left),
         );
-        // Progress is a courtesy: a closed standard error does not stop a run.
         let mut out = std::io::stderr().lock();
         let _ = if self.terminal { write!(out, "\r\x1b[K{line}") } else { writeln!(out, "{line}") };
         let _ = out.flush();

@@ -51,6 +51,9 @@ pub struct StageRecord {
 /// A run under way.
 struct Session<'a> {
     scene: &'a Scene,
+    /// The scene as it stands in the folder; snapshots hold it, so that they are known from those
+    /// of other scenes.
+    text: String,
     model: Model,
     folder: RunFolder,
     store: SnapshotStore,
@@ -80,12 +83,10 @@ pub fn run(
     let (scene, model) = check::read(text)?;
     let (_, steps, problems) = check::limits_of(&scene, &model);
     if !problems.is_empty() {
-        return Err(Failure::Refused(problems));
+        return Err(check::refusal(text.name(), &problems));
     }
     let folder = RunFolder::create(out, text.text(), force)?;
-    let mut session = Session::new(&scene, model, folder, steps, interrupt, quiet, true)?;
-    session.write_facts("running", None)?;
-    session.finish_run(0, false)
+    Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start()
 }
 
 /// Takes the run in a folder up again from its newest snapshot.
@@ -94,22 +95,31 @@ pub fn run(
 /// As [`run`], and when no snapshot can be read.
 pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
     let folder = RunFolder::open(out)?;
-    let text = SceneText::read(&folder.scene_path())?;
+    let text = SceneText::read(folder.scene_path())?;
     if folder.facts()?["exit"] == "done" {
         return Err(Failure::io(out.display(), "this run is done; there is nothing to resume"));
     }
     let (scene, model) = check::read(&text)?;
     let (_, steps, _) = check::limits_of(&scene, &model);
+    if !folder.has_snapshots() {
+        if !quiet {
+            progress::say(format_args!("no snapshot was taken yet: the run starts again"));
+        }
+        return Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start();
+    }
     let latest = folder.snapshots().latest()?;
     for warning in &latest.warnings {
-        eprintln!("warning: {warning}; an older snapshot is used");
+        progress::say(format_args!("warning: {warning}; an older snapshot is used"));
     }
     let mut session = Session::new(&scene, model, folder, steps, interrupt, quiet, false)?;
-    let stage = session.restore(&latest.sections)?;
+    let stage = session
+        .restore(&latest.sections)
+        .map_err(|failure| failure.with_context(format_args!("resuming from {}", latest.path.display())))?;
     if !quiet {
         let clock = session.model.simulation.clock();
-        eprintln!("resuming at {:.6} s, step {}", clock.time(), clock.step());
+        progress::say(format_args!("resuming at {:.6} s, step {}", clock.time(), clock.step()));
     }
+    session.write_facts("running", None)?;
     session.finish_run(stage, true)
 }
 
@@ -141,6 +151,7 @@ impl<'a> Session<'a> {
         let outputs = outputs.map(|output| observers::of_output(output, folder.path(), &shown, fresh));
         Ok(Self {
             scene,
+            text: SceneText::read(folder.scene_path())?.text().to_owned(),
             outputs: outputs.collect::<Result<_, _>>()?,
             store: folder.snapshots(),
             first_step: 0,
@@ -155,32 +166,45 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// Runs all stages from the first step on.
+    fn start(&mut self) -> Result<Value, Failure> {
+        let snapshots = self.store.folder();
+        std::fs::create_dir_all(snapshots).map_err(|error| Failure::io(snapshots.display(), error))?;
+        self.write_facts("running", None)?;
+        self.finish_run(0, false)
+    }
+
     /// Runs all stages from `first` on and writes what is known at the end. `under_way` when the
     /// first stage was begun before.
     fn finish_run(&mut self, first: usize, under_way: bool) -> Result<Value, Failure> {
         self.first_step = self.model.simulation.clock().step();
         let result = (first..self.scene.stages.len())
             .try_for_each(|stage| self.stage(stage, under_way && stage == first))
-            .and_then(|()| self.close());
-        match result {
-            Ok(()) => {
-                crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
-                self.write_facts("done", Some(self.folder.checksums()?))
+            .and_then(|()| self.close())
+            .and_then(|()| self.write_facts("done", Some(self.folder.checksums()?)));
+        result.map_err(|failure| {
+            let exit = if let Failure::Interrupted { .. } = failure { "interrupted" } else { "failed" };
+            // The failure itself matters more than a folder that cannot be written.
+            let _ = self.write_facts(exit, None);
+            match failure {
+                Failure::Io(reason) => {
+                    let path = self.folder.path().display();
+                    Failure::Io(format!(
+                        "{reason}\n  = help: when that is put right, go on with `granular resume {path}`"
+                    ))
+                }
+                other => other,
             }
-            Err(failure) => {
-                let exit = if let Failure::Interrupted { .. } = failure { "interrupted" } else { "failed" };
-                // The failure itself matters more than a folder that cannot be written.
-                let _ = self.write_facts(exit, None);
-                Err(failure)
-            }
-        }
+        })
     }
 
     fn close(&mut self) -> Result<(), Failure> {
         for output in &mut self.outputs {
             output.finish(&self.model.simulation).map_err(granular_core::RunError::from)?;
         }
-        self.save(self.scene.stages.len())
+        self.save(self.scene.stages.len())?;
+        crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
+        Ok(())
     }
 
     fn stage(&mut self, index: usize, under_way: bool) -> Result<(), Failure> {
@@ -192,8 +216,7 @@ impl<'a> Session<'a> {
             End::For(time) => (time.value(), None),
             End::Quiet { within, .. } => (within.value(), Some(Arc::new(AtomicBool::new(false)))),
         };
-        let snapshot_due = Arc::new(AtomicBool::new(false));
-        let mut extra = self.stage_observers(index, longest, quiet_flag.as_ref(), &snapshot_due)?;
+        let mut extra = self.stage_observers(index, longest, quiet_flag.as_ref())?;
         let ended = loop {
             let mut observers: Vec<Scheduled> = self.outputs.drain(..).chain(extra.drain(..)).collect();
             let ending = self.model.simulation.run(longest, &mut observers, &self.interrupt.raised);
@@ -205,10 +228,17 @@ impl<'a> Session<'a> {
                     finish_all(&mut extra, &self.model.simulation)?;
                     return Err(self.interrupted());
                 }
-                Ending::Stopped if snapshot_due.swap(false, Ordering::Relaxed) => {
-                    self.save_with(index, &extra)?
+                // Rest goes first: whether a snapshot is due at the same step is a matter of the
+                // wall clock, and must not decide how long the stage lasts.
+                Ending::Stopped if quiet_flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) => {
+                    break "at rest";
                 }
-                Ending::Stopped => break "at rest",
+                Ending::Stopped => {
+                    self.save_with(index, &extra)?;
+                    // The interval counts from the end of the save: a slow disk must not make
+                    // the next snapshot due at once.
+                    extra[0] = self.snapshot_timer();
+                }
                 Ending::Finished if quiet_flag.is_some() => break "not at rest within the time",
                 Ending::Finished => break "time",
             }
@@ -241,10 +271,8 @@ impl<'a> Session<'a> {
         index: usize,
         longest: f64,
         quiet_flag: Option<&Arc<AtomicBool>>,
-        snapshot_due: &Arc<AtomicBool>,
     ) -> Result<Vec<Scheduled>, Failure> {
-        let interval = Duration::from_secs_f64(self.scene.snapshot_every.value());
-        let mut extra = vec![SnapshotTimer::scheduled(interval, snapshot_due.clone())];
+        let mut extra = vec![self.snapshot_timer()];
         if let (End::Quiet { kinetic_over_potential, within }, Some(flag)) =
             (self.scene.stages[index].end, quiet_flag)
         {
@@ -263,13 +291,20 @@ impl<'a> Session<'a> {
         Ok(extra)
     }
 
+    fn snapshot_timer(&self) -> Scheduled {
+        let interval = Duration::try_from_secs_f64(self.scene.snapshot_every.value());
+        let step = self.model.simulation.clock().step();
+        SnapshotTimer::scheduled(interval.unwrap_or(Duration::MAX), step)
+    }
+
     fn end_stage(&mut self, ended: &str) {
         let time = self.model.simulation.clock().time();
         if let Some(record) = self.records.last_mut() {
             record.end = Some(time);
             record.ended = Some(ended.to_owned());
             if !self.quiet {
-                eprintln!("{}: {:.6} s to {time:.6} s ({ended})", record.name, record.start);
+                let (name, start) = (&record.name, record.start);
+                progress::say(format_args!("{name}: {start:.6} s to {time:.6} s ({ended})"));
             }
         }
     }
@@ -311,6 +346,7 @@ impl Session<'_> {
         run.put_one("stage", stage as u64);
         run.put_text("records", &serde_json::to_string(&self.records).expect("records can be written"));
         run.put_text("version", env!("CARGO_PKG_VERSION"));
+        run.put_text("scene", &self.text);
         sections.push(run);
         sections.extend(self.outputs.iter().map(Scheduled::save));
         sections.extend(extra.iter().filter(|observer| observer.name() == "rest").map(Scheduled::save));
@@ -326,6 +362,13 @@ impl Session<'_> {
             return Err(Failure::Io(format!(
                 "the snapshot is of version {version}, this program of version {}; resume with that version",
                 env!("CARGO_PKG_VERSION")
+            )));
+        }
+        if run.text("scene")? != self.text {
+            return Err(Failure::Io(format!(
+                "section `run/scene` of the snapshot differs from {}: the snapshot is of another scene; put that \
+                 scene back, or start a new run",
+                self.folder.scene_path().display()
             )));
         }
         self.model.simulation.restore(sections)?;

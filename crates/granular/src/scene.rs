@@ -10,30 +10,30 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// A granular problem.
+/// A granular problem: the whole file, `Scene(...)`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of this format: 1.
     pub version: u32,
-    /// Plane or space.
+    /// Whether grains are disks or spheres.
     pub dimension: Dimension,
     /// One line about the scene, for figures and reports.
     #[serde(default)]
     pub title: String,
-    /// Gravity, one component per axis; none by default.
+    /// Gravity along each axis, such as `[0.0, -9.81]`; none by default.
     #[serde(default)]
     pub gravity: Vec<Acceleration>,
-    /// Materials by name.
+    /// Materials of grains and walls, by names of your choice.
     pub materials: BTreeMap<String, MaterialSpec>,
     /// The grains, described apart from the method.
     pub sample: Sample,
-    /// Walls.
+    /// Walls; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
     /// What happens, one stage after the other.
     pub stages: Vec<Stage>,
-    /// The method, under a name of your choice. One for now.
+    /// The method, under a name of your choice, such as `{ "grains": Dem(()) }`. Exactly one.
     pub solvers: BTreeMap<String, SolverSpec>,
     /// What to write during the run.
     #[serde(default)]
@@ -41,7 +41,8 @@ pub struct Scene {
     /// Figures made at the end of the run.
     #[serde(default)]
     pub figures: Vec<FigureSpec>,
-    /// Wall-clock time between snapshots; one is also taken at every stage and on interruption.
+    /// Time on the wall clock between snapshots, from which `granular resume` goes on; one is also
+    /// taken at the start of every stage and on interruption.
     #[serde(default = "default_snapshot_interval")]
     pub snapshot_every: Time,
 }
@@ -50,7 +51,7 @@ fn default_snapshot_interval() -> Time {
     60.0.into()
 }
 
-/// Plane or space.
+/// Plane or space: how many components positions and velocities have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Dimension {
     /// Disks in the plane, x to the right and y up; everything is per metre of depth.
@@ -72,20 +73,20 @@ pub enum SolverSpec {
 pub enum Sample {
     /// A column that stands on y = 0 (z = 0 in space) with its left side at x = 0.
     Column {
-        /// How large the column is.
+        /// How large the column is: by its number of grains or by its width.
         extent: Extent,
-        /// Height over width.
+        /// Height over width before anything moves.
         aspect_ratio: f64,
-        /// Depth along y in space, over the width; not in the plane.
+        /// Depth along y over the width: needed in space, not allowed in the plane.
         #[serde(default)]
         depth_ratio: Option<f64>,
         /// Sizes of the grains.
         grading: GradingSpec,
-        /// Material of the grains.
+        /// Name of the material of the grains.
         material: String,
         /// How the grains are placed.
         packing: PackingSpec,
-        /// Random seed of sizes and places.
+        /// Random seed of sizes and places: the same seed gives the same sample.
         #[serde(default = "default_seed")]
         seed: u64,
     },
@@ -112,7 +113,8 @@ pub enum Extent {
 pub enum GradingSpec {
     /// One diameter.
     Single(Length),
-    /// Cumulative beta curve by area (plane) or volume (space).
+    /// Diameters between `min` and `max` whose share of area (plane) or volume (space) follows the
+    /// beta distribution.
     Beta {
         /// Smallest diameter.
         min: Length,
@@ -147,100 +149,100 @@ pub enum PackingSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum WallSpec {
-    /// The plane y = 0 (z = 0 in space) below the sample.
+    /// The plane y = 0 (z = 0 in space) below the sample, called `floor`.
     Floor {
-        /// Material.
+        /// Name of the material.
         material: String,
     },
-    /// The plane x = 0 left of the sample.
+    /// The plane x = 0 left of the sample, called `left`.
     Left {
-        /// Material.
+        /// Name of the material.
         material: String,
     },
-    /// The plane right of a column.
+    /// The plane right of a column, called `right`.
     Right {
-        /// Material.
+        /// Name of the material.
         material: String,
     },
-    /// The plane right of a column, out of the way from a stage on.
+    /// The plane right of a column, called `gate`, which is out of the way from a stage on.
     Gate {
-        /// Material.
+        /// Name of the material.
         material: String,
-        /// Stage at whose start the gate opens.
+        /// Name of the stage at whose start the gate opens.
         opens: String,
     },
-    /// Planes before and behind a column in space.
+    /// Planes before and behind a column in space, called `front` and `back`.
     Sides {
-        /// Material.
+        /// Name of the material.
         material: String,
     },
-    /// A plane anywhere; grains are on the side to which the normal points.
+    /// A plane anywhere. Grains are on the side to which its normal points.
     Plane {
-        /// Name, for outputs.
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
-        /// A point on it.
+        /// A point on it, one length per axis.
         point: Vec<Length>,
-        /// Normal, of any length.
+        /// Its normal, one number per axis, of any length.
         normal: Vec<f64>,
-        /// Material.
+        /// Name of the material.
         material: String,
-        /// Stage at whose start it opens; never by default.
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
     },
-    /// A straight line between two points.
+    /// A straight line between two points, with grains on both sides.
     Segment {
-        /// Name, for outputs.
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
         /// One end.
         from: Vec<Length>,
         /// The other end.
         to: Vec<Length>,
-        /// Material.
+        /// Name of the material.
         material: String,
-        /// Stage at whose start it opens; never by default.
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
     },
     /// A solid block with edges along the axes; flat along one axis it is a plate.
     Block {
-        /// Name, for outputs.
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
-        /// Lower corner.
+        /// Corner with the lowest coordinates.
         low: Vec<Length>,
-        /// Upper corner.
+        /// Corner with the highest coordinates.
         high: Vec<Length>,
-        /// Material.
+        /// Name of the material.
         material: String,
-        /// Stage at whose start it opens; never by default.
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
     },
     /// A closed box around the grains, made of planes called `<name>_<axis>_low` and `_high`.
     Box {
-        /// Name, for outputs.
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
-        /// Lower corner.
+        /// Corner with the lowest coordinates.
         low: Vec<Length>,
-        /// Upper corner.
+        /// Corner with the highest coordinates.
         high: Vec<Length>,
-        /// Material.
+        /// Name of the material.
         material: String,
     },
 }
 
-/// A part of the run.
+/// A part of the run, such as settling under gravity or collapsing.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// Name.
+    /// Name, which no other stage has.
     pub name: String,
     /// When it ends.
     pub end: End,
-    /// What changes at its start.
+    /// What changes at its start, in this order.
     #[serde(default)]
     pub changes: Vec<Change>,
-    /// Step during this stage; that of the solver by default.
+    /// Step during this stage; by default that of the solver.
     #[serde(default)]
     pub time_step: Option<Time>,
 }
@@ -253,9 +255,10 @@ pub enum End {
     For(Time),
     /// When the grains have come to rest.
     Quiet {
-        /// Kinetic over potential energy below which grains are at rest.
+        /// Kinetic over potential energy below which grains are at rest, such as 1e-6.
         kinetic_over_potential: f64,
-        /// Time after which the stage ends in any case.
+        /// Time after which the stage ends in any case. The grains must be at rest for a twentieth
+        /// of it.
         within: Time,
     },
 }
@@ -266,18 +269,18 @@ pub enum End {
 pub enum Change {
     /// Friction of one material.
     Friction {
-        /// Material.
+        /// Name of the material.
         material: String,
         /// New coefficient.
         value: f64,
     },
-    /// Gravity.
+    /// Gravity, one component per axis.
     Gravity(Vec<Acceleration>),
     /// All velocities and spins become zero.
     StopMotion,
-    /// A wall goes out of the way.
+    /// The wall of this name, such as `gate`, goes out of the way.
     Open(String),
-    /// A wall comes back.
+    /// The wall of this name comes back.
     Close(String),
 }
 
@@ -285,18 +288,18 @@ pub enum Change {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// When.
+    /// How often.
     pub every: EverySpec,
-    /// What.
+    /// What to write, and where.
     pub write: Writer,
 }
 
-/// A schedule.
+/// How often something is written: at the start and then in equal intervals.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum EverySpec {
-    /// Simulated time.
+    /// Every so much simulated time, at the first step at or after it.
     Time(Time),
-    /// Steps.
+    /// Every so many steps, 1 or more.
     Steps(u64),
 }
 
@@ -304,32 +307,32 @@ pub enum EverySpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Writer {
-    /// A row of numbers, in a CSV file.
+    /// One row of numbers per look, in a CSV file with units in its head; the first column is `time`.
     Table {
-        /// File in the run folder.
+        /// File in the run folder, such as `series.csv`.
         path: String,
-        /// Numbers to write; `granular info --shown` lists them.
+        /// Numbers to write; `granular info <scene>` lists all there are.
         probes: Vec<String>,
     },
     /// Fields of all grains, for ParaView: one `.vtp` per frame and one `.pvd` that lists them.
     Fields {
         /// Name of the files in the run folder, without ending.
         path: String,
-        /// Fields to write.
+        /// Fields to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
     },
     /// Contacts as lines between grains, for ParaView.
     Contacts {
         /// Name of the files in the run folder, without ending.
         path: String,
-        /// Fields of contacts to write.
+        /// Fields of contacts (`Link`) to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
     },
     /// Fields of all grains in one temporal `.vtkhdf` file (cargo feature `hdf5`).
     Hdf5 {
         /// Name of the file in the run folder, without ending.
         path: String,
-        /// Fields to write.
+        /// Fields to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
     },
 }
@@ -340,51 +343,52 @@ pub enum Writer {
 pub enum FigureSpec {
     /// Columns of a table over time.
     Series {
-        /// Name of the figure.
+        /// Name of the figure in the run folder, without ending.
         path: String,
-        /// Table to read.
+        /// Path of the `Table` output to read.
         table: String,
-        /// Columns to draw.
+        /// Columns to draw, at least one.
         columns: Vec<String>,
     },
-    /// Run-out and height of a collapsing column over time, in the units of the thesis.
+    /// Run-out and height of a collapsing column over time: lengths over the width of the column,
+    /// times over sqrt(H/g).
     Runout {
-        /// Name of the figure.
+        /// Name of the figure in the run folder, without ending.
         path: String,
-        /// Table with `front` and `height`.
+        /// Path of the `Table` output to read; it must hold `front` and `height`.
         table: String,
-        /// Stage in which the column collapses.
+        /// Name of the stage in which the column collapses.
         stage: String,
     },
     /// Where the energy goes after a stage begins, over the energy at its start.
     Energies {
-        /// Name of the figure.
+        /// Name of the figure in the run folder, without ending.
         path: String,
-        /// Table with the energies and losses.
+        /// Path of the `Table` output to read; it must hold the energies and losses.
         table: String,
-        /// Stage at whose start the balance begins.
+        /// Name of the stage at whose start the balance begins.
         stage: String,
     },
     /// Grains, coloured by a field, at several times.
     Flow {
-        /// Name of the figure.
+        /// Name of the figure in the run folder, without ending.
         path: String,
-        /// `Fields` output to read; it must hold `radius` and the field of the colour.
+        /// Path of the `Fields` output to read; it must hold `radius` and the field of the colour.
         fields: String,
         /// Field that gives the colour.
         color: String,
-        /// Stage from whose start times count.
+        /// Name of the stage from whose start times count.
         stage: String,
-        /// Times in units of sqrt(H/g) of a column; in seconds for other samples.
+        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
         times: Vec<f64>,
     },
     /// Force chains: contacts of one frame, their width by the normal force.
     ForceChains {
-        /// Name of the figure.
+        /// Name of the figure in the run folder, without ending.
         path: String,
-        /// `Contacts` output to read; it must hold `normal_force`.
+        /// Path of the `Contacts` output to read; it must hold `normal_force`.
         contacts: String,
-        /// Stage from whose start the time counts.
+        /// Name of the stage from whose start the time counts.
         stage: String,
         /// Time in units of sqrt(H/g) of a column; in seconds for other samples.
         time: f64,

@@ -1,3 +1,22 @@
 //! Integration tests of the discrete element method.
 
+// Outside `#[test]` functions clippy does not see that this is a test.
+#![allow(clippy::unwrap_used)]
+
+mod conservation;
+mod contract;
+mod energy;
+mod extremes;
+mod frames;
 mod impact;
+mod incline;
+mod lists;
+mod memory;
+mod oblique;
+mod restart;
+mod sample;
+mod stability;
+
+#[global_allocator]
+static ALLOCATOR: granular_core::testing::CountingAllocator =
+    granular_core::testing::CountingAllocator::new();

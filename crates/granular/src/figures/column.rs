@@ -22,18 +22,37 @@ pub(super) fn runout(
         let pairs = time.into_iter().zip(values).filter(|(t, _)| *t >= units.start);
         pairs.map(|(t, value)| [(t - units.start) / units.time, map(value)]).collect::<Vec<_>>()
     };
-    let run_out = over_time("front", &|front| (front - width) / width);
-    let height = over_time("height", &|height| height / width);
+    // Grains at the front touch the main mass off and on; the median shows where it is.
+    let run_out = running_median(&over_time("front", &|front| (front - width) / width));
+    let height = running_median(&over_time("height", &|height| height / width));
     let last = |points: &[[f64; 2]]| points.last().map_or(f64::NAN, |point| point[1]);
     let charts = vec![
         Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear("(L − L₀) / L₀ [-]"))
-            .note(format!("a = {:.2}; final run-out {:.3}", release.height / width, last(&run_out)))
+            .note(format!(
+                "a = {:.2}; final run-out {:.3}; running median of {MEDIAN} rows",
+                release.height / width,
+                last(&run_out)
+            ))
             .with(Series::new("", run_out, Style::Line)),
         Chart::new("Height", Axis::linear(units.time_label()), Axis::linear("H / L₀ [-]"))
             .note(format!("final height {:.3} L₀", last(&height)))
             .with(Series::new("", height, Style::Line).colour(1)),
     ];
     Panels::new(title(scene, "run-out and height"), 2, charts)
+}
+
+/// Rows that a running median takes.
+const MEDIAN: usize = 9;
+
+/// Median of y over the neighbouring points, fewer at the ends; the last point stays.
+fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let median = |k: usize| {
+        let reach = (MEDIAN / 2).min(k).min(points.len() - 1 - k);
+        let mut window: Vec<f64> = points[k - reach..=k + reach].iter().map(|point| point[1]).collect();
+        window.sort_unstable_by(f64::total_cmp);
+        [points[k][0], window[reach]]
+    };
+    (0..points.len()).map(median).collect()
 }
 
 /// Energies over the energy at the start, as figure 4.14 of \[Kumar2014\] draws them.

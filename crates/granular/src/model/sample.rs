@@ -5,7 +5,7 @@ use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
 use granular_core::{Dim, Linear, Spin, Vector};
 use granular_dem::spec::GrainSpec;
 use granular_dem::{Grain, MaterialId};
-use granular_packing::{Grading, Lattice, Sides, ballistic, loose_lattice};
+use granular_packing::{Grading, GradingError, Lattice, PackingError, Sides, ballistic, loose_lattice};
 
 /// Solid fraction that a deposit comes to rest at, to estimate sizes: plane and space.
 const SETTLED: [f64; 2] = [0.815, 0.60];
@@ -51,7 +51,7 @@ fn grain<D: Dim>(
     materials: &NamedMaterials,
     problems: &mut Problems,
 ) -> Option<Grain<D>> {
-    let path = format!("sample.{index}");
+    let path = format!("sample.Grains.{index}");
     let material = materials.find(&format!("{path}.material"), &spec.material, problems);
     let position = problems.vector::<D, _>(&format!("{path}.position"), &spec.position);
     let velocity = if spec.velocity.is_empty() {
@@ -121,7 +121,17 @@ impl<'a> Column<'a> {
             problems.add("sample.packing", "Hexagonal", "a grading of one size: Single(\"1 mm\")", "");
         }
         if let Err(error) = grading_of(grading).check() {
-            problems.add("sample.grading", error.to_string(), error.allowed, "");
+            let key = match error.what {
+                what if what.starts_with("smallest") => ".min",
+                what if what.starts_with("largest") => ".max",
+                _ => "",
+            };
+            let key = if matches!(grading, GradingSpec::Single(_)) { "" } else { key };
+            let value = match key {
+                "" => format!("a grading whose {} is {}", error.what, error.value),
+                _ => format!("{} m", error.value),
+            };
+            problems.add(format!("sample.grading{key}"), value, error.allowed, "");
         }
         let column = Self {
             extent: *extent,
@@ -135,14 +145,14 @@ impl<'a> Column<'a> {
     }
 
     fn build<D: Dim>(&self, material: MaterialId, problems: &mut Problems) -> Option<BuiltSample<D>> {
-        match self.place::<D>(problems) {
+        match self.place::<D>() {
             Ok((radii, positions, column)) => {
                 let pairs = positions.into_iter().zip(radii);
                 let grains = pairs.map(|(position, radius)| Grain::at(position, radius, material)).collect();
                 Some(BuiltSample { grains, column: Some(column) })
             }
-            Err(reason) => {
-                problems.add("sample", reason, "a column that can be filled", "");
+            Err(Refusal { path, value, allowed }) => {
+                problems.add(path, value, allowed, "");
                 None
             }
         }
@@ -150,7 +160,7 @@ impl<'a> Column<'a> {
 
     /// Radii, places and the size of the column.
     #[allow(clippy::type_complexity)]
-    fn place<D: Dim>(&self, problems: &mut Problems) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), String> {
+    fn place<D: Dim>(&self) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), Refusal> {
         let grading = grading_of(self.grading);
         let solid = if self.packing == PackingSpec::Hexagonal {
             Lattice::Hexagonal.density::<D>()
@@ -163,17 +173,17 @@ impl<'a> Column<'a> {
         let count = match self.extent {
             Extent::Grains(count) => count as f64,
             Extent::Width(width) => {
-                let probe = grading.sample::<D>(1000, self.seed).map_err(|error| error.to_string())?;
+                let probe = grading.sample::<D>(1000, self.seed)?;
                 let mean = probe.iter().map(|&r| D::ball_volume(r)).sum::<f64>() / probe.len() as f64;
                 (solid * shape * width.value().powi(D::N as i32) / mean).round().max(1.0)
             }
         };
         if count > MOST_GRAINS {
-            problems.add("sample.extent", format!("a column of {count:.0} grains"), "at most 1e8 grains", "");
-            return Err(format!("a column of {count:.0} grains"));
+            let value = format!("a column of {count:.0} grains");
+            return Err(Refusal { path: "sample.extent", value, allowed: "at most 1e8 grains".to_owned() });
         }
         let count = count as usize;
-        let radii = grading.sample::<D>(count, self.seed).map_err(|error| error.to_string())?;
+        let radii = grading.sample::<D>(count, self.seed)?;
         let volume: f64 = radii.iter().map(|&radius| D::ball_volume(radius)).sum();
         let width = match self.extent {
             Extent::Width(width) => width.value(),
@@ -187,13 +197,13 @@ impl<'a> Column<'a> {
                 let depth = size.depth.map_or(D::Vec::ZERO, |depth| D::Vec::along(1, depth));
                 let high = D::Vec::along(0, size.width) + depth + D::Vec::along(D::UP, size.height);
                 let sites = Lattice::Hexagonal.fill::<D>(radii[0], D::Vec::ZERO, high);
-                let sites = sites.map_err(|error| error.to_string())?;
+                let sites = sites?;
                 (vec![radii[0]; sites.len()], sites)
             }
             PackingSpec::Loose => {
                 let base: Vec<f64> = std::iter::once(size.width).chain(size.depth).collect();
                 let sites = loose_lattice::<D>(&radii, D::Vec::ZERO, &base, LOOSE_GAP, self.seed);
-                (radii, sites.map_err(|error| error.to_string())?)
+                (radii, sites?)
             }
         };
         Ok((radii, positions, size))
@@ -205,10 +215,10 @@ impl<'a> Column<'a> {
         grading: &Grading,
         count: usize,
         size: ColumnSize,
-    ) -> Result<(Vec<f64>, Vec<D::Vec>), String> {
+    ) -> Result<(Vec<f64>, Vec<D::Vec>), Refusal> {
         let more = (count as f64 / (1.0 - TAKEN_OFF)).ceil() as usize;
-        let radii = grading.sample::<D>(more, self.seed).map_err(|error| error.to_string())?;
-        let deposit = ballistic(&radii, size.width, Sides::Walls, self.seed).map_err(|e| e.to_string())?;
+        let radii = grading.sample::<D>(more, self.seed)?;
+        let deposit = ballistic(&radii, size.width, Sides::Walls, self.seed)?;
         let mut order: Vec<usize> = (0..more).collect();
         let top = |&index: &usize| deposit.positions[index].y + radii[index];
         order.sort_by(|a, b| top(a).total_cmp(&top(b)));
@@ -219,6 +229,39 @@ impl<'a> Column<'a> {
             D::Vec::along(0, position.x) + D::Vec::along(1, position.y)
         };
         Ok((order.iter().map(|&index| radii[index]).collect(), order.iter().map(place).collect()))
+    }
+}
+
+/// Why a column cannot be filled.
+struct Refusal {
+    path: &'static str,
+    value: String,
+    allowed: String,
+}
+
+impl From<GradingError> for Refusal {
+    fn from(error: GradingError) -> Self {
+        let value = format!("a grading whose {} is {}", error.what, error.value);
+        Self { path: "sample.grading", value, allowed: error.allowed }
+    }
+}
+
+impl From<PackingError> for Refusal {
+    fn from(error: PackingError) -> Self {
+        match error {
+            PackingError::OutOfRange { what, value, allowed } if what.starts_with("width") => {
+                let value = format!("too narrow a column: its width is {value} m");
+                Self { path: "sample.extent", value, allowed }
+            }
+            PackingError::OutOfRange { what, value, allowed } => {
+                let value = format!("a column that cannot be filled: {what} is {value}");
+                Self { path: "sample", value, allowed }
+            }
+            other => {
+                let value = format!("a column that cannot be filled: {other}");
+                Self { path: "sample", value, allowed: "a wider column or another seed".to_owned() }
+            }
+        }
     }
 }
 

@@ -6,6 +6,17 @@ use granular_core::units::Length;
 use granular_core::{Dim, Vector};
 use granular_dem::{MaterialId, SetupError, Wall};
 
+/// What walls may stand beside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Beside {
+    /// A column of this size.
+    Column(ColumnSize),
+    /// A column that could not be built.
+    Unknown,
+    /// Grains that are no column.
+    Nothing,
+}
+
 /// Walls, and which opens at which stage: scene path, name of the wall, name of the stage.
 pub(crate) struct BuiltWalls<D: Dim> {
     pub(crate) list: Vec<Wall<D>>,
@@ -14,7 +25,7 @@ pub(crate) struct BuiltWalls<D: Dim> {
 
 pub(crate) fn walls<D: Dim>(
     specs: &[WallSpec],
-    column: Option<ColumnSize>,
+    beside: Beside,
     materials: &NamedMaterials,
     problems: &mut Problems,
 ) -> BuiltWalls<D> {
@@ -24,15 +35,23 @@ pub(crate) fn walls<D: Dim>(
         let Some(material) = materials.find(&format!("{path}.material"), spec.material(), problems) else {
             continue;
         };
-        if spec.needs_column() && column.is_none() {
-            let hint = "state a Plane instead";
-            problems.add(path.clone(), "a wall beside a column", "a sample that is a column", hint);
-            continue;
-        }
+        let column = match beside {
+            Beside::Column(column) => Some(column),
+            Beside::Unknown if spec.needs_column() => continue,
+            Beside::Nothing if spec.needs_column() => {
+                let (value, hint) = ("a wall beside a column", "write a Plane instead");
+                problems.add(path, value, "only with a sample that is a Column", hint);
+                continue;
+            }
+            _ => None,
+        };
         let before = built.list.len();
         match shapes::<D>(&path, spec, column, material, problems) {
             Ok(list) => built.list.extend(list),
-            Err(error) => problems.add(path.clone(), error.what, error.allowed, ""),
+            Err(error) => {
+                let value = format!("a wall that cannot be: {} is {}", error.what, error.value);
+                problems.add(path.clone(), value, error.allowed, "");
+            }
         }
         if let Some(stage) = spec.opens() {
             let names = built.list[before..].iter().map(|wall| wall.name.clone());

@@ -6,6 +6,8 @@ use super::{FigureSpec, Writer};
 pub(crate) struct Need<'a> {
     /// Key under which the figure names its output.
     pub(crate) key: &'static str,
+    /// Writer of that output.
+    pub(crate) writer: &'static str,
     /// Path of the output.
     pub(crate) output: &'a str,
     /// What the output must hold.
@@ -22,6 +24,16 @@ impl Writer {
             | Self::Fields { path, .. }
             | Self::Contacts { path, .. }
             | Self::Hdf5 { path, .. } => path,
+        }
+    }
+
+    /// Name of this kind of writer.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Table { .. } => "Table",
+            Self::Fields { .. } => "Fields",
+            Self::Contacts { .. } => "Contacts",
+            Self::Hdf5 { .. } => "Hdf5",
         }
     }
 
@@ -52,20 +64,36 @@ impl FigureSpec {
         match self {
             Self::Series { table, columns, .. } => {
                 let names = columns.iter().map(String::as_str).collect();
-                Need { key: "table", output: table, names, stage: None }
+                Need { key: "table", writer: "Table", output: table, names, stage: None }
             }
-            Self::Runout { table, stage, .. } => {
-                Need { key: "table", output: table, names: vec!["front", "height"], stage: Some(stage) }
-            }
-            Self::Energies { table, stage, .. } => {
-                Need { key: "table", output: table, names: ENERGIES.to_vec(), stage: Some(stage) }
-            }
-            Self::Flow { fields, color, stage, .. } => {
-                Need { key: "fields", output: fields, names: vec!["radius", color], stage: Some(stage) }
-            }
-            Self::ForceChains { contacts, stage, .. } => {
-                Need { key: "contacts", output: contacts, names: vec!["normal_force"], stage: Some(stage) }
-            }
+            Self::Runout { table, stage, .. } => Need {
+                key: "table",
+                writer: "Table",
+                output: table,
+                names: vec!["front", "height"],
+                stage: Some(stage),
+            },
+            Self::Energies { table, stage, .. } => Need {
+                key: "table",
+                writer: "Table",
+                output: table,
+                names: ENERGIES.to_vec(),
+                stage: Some(stage),
+            },
+            Self::Flow { fields, color, stage, .. } => Need {
+                key: "fields",
+                writer: "Fields",
+                output: fields,
+                names: vec!["radius", color],
+                stage: Some(stage),
+            },
+            Self::ForceChains { contacts, stage, .. } => Need {
+                key: "contacts",
+                writer: "Contacts",
+                output: contacts,
+                names: vec!["normal_force"],
+                stage: Some(stage),
+            },
         }
     }
 }

@@ -87,6 +87,11 @@ fn step<'t>(text: &str, node: &'t Node, segment: &str) -> Step<'t> {
     let mut is_variant = false;
     loop {
         is_variant |= variant(text, inner) == Some(segment);
+        // In `Grains([...])` an index means the list: paths need not name the only argument.
+        let list = inner.only_argument().filter(|node| node.group().is_some_and(|list| list.bracket == '['));
+        if let (Some(list), Ok(_)) = (list, segment.parse::<usize>()) {
+            inner = list;
+        }
         if let Some(entry) = inner.group().and_then(|group| entry(text, group, segment)) {
             return Step::Into(entry);
         }

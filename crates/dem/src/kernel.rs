@@ -1,0 +1,326 @@
+//! The pass over the contacts of a block: who meets within the step, and the load between them.
+
+use crate::law::{ContactLaw, Load, Meeting};
+use crate::ledger::Tally;
+use crate::lists::BlockList;
+use crate::wall::Wall;
+use granular_core::{Dim, Linear};
+
+/// What the kernels read: grains at one instant, with walls and step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View<'a, D: Dim> {
+    pub(crate) position: &'a [D::Vec],
+    pub(crate) velocity: &'a [D::Vec],
+    pub(crate) spin: &'a [D::Spin],
+    /// Velocity and spin at the start of the step, which move the grains up to its middle.
+    pub(crate) start_velocity: &'a [D::Vec],
+    pub(crate) start_spin: &'a [D::Spin],
+    pub(crate) radius: &'a [f64],
+    pub(crate) mass: &'a [f64],
+    pub(crate) material: &'a [u8],
+    pub(crate) first_material: u8,
+    pub(crate) walls: &'a [Wall<D>],
+    /// The step \[s\]; zero between steps.
+    pub(crate) dt: f64,
+    /// The last step taken \[s\].
+    pub(crate) last_dt: f64,
+    /// Surfaces farther apart than this do not meet within the step \[m\].
+    pub(crate) margin: f64,
+    /// Part of the overlap by which each lever arm is shorter than the radius.
+    pub(crate) arm_share: f64,
+}
+
+/// Overlap over the smaller radius at which contacts stop making sense.
+pub(crate) const DEEPEST: f64 = 0.5;
+
+/// A contact deeper than [`DEEPEST`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Trouble {
+    pub(crate) first: u32,
+    pub(crate) overlap: f64,
+    pub(crate) radius: f64,
+}
+
+/// What a block owes to a grain of an earlier block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Owed<D: Dim> {
+    pub(crate) force: D::Vec,
+    pub(crate) torque: D::Spin,
+}
+
+/// Laws between materials.
+pub(crate) struct Laws<'a, L> {
+    pub(crate) list: &'a [L],
+    pub(crate) materials: usize,
+}
+
+impl<L> Clone for Laws<'_, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<L> Copy for Laws<'_, L> {}
+
+impl<'a, L> Laws<'a, L> {
+    #[inline(always)]
+    pub(crate) fn between(self, a: u8, b: u8) -> &'a L {
+        &self.list[a as usize * self.materials + b as usize]
+    }
+}
+
+impl<D: Dim> View<'_, D> {
+    #[inline(always)]
+    pub(crate) fn material_of(&self, grain: usize) -> u8 {
+        if self.material.is_empty() { self.first_material } else { self.material[grain] }
+    }
+}
+
+/// Two bodies before they are known to meet: what is needed of the second one.
+struct Other<D: Dim> {
+    velocity: D::Vec,
+    spin: D::Spin,
+    start_velocity: D::Vec,
+    start_spin: D::Spin,
+    arm: f64,
+}
+
+/// Share of the step during which surfaces overlap, and the overlap averaged over the step,
+/// when the motion through the step is uniform. This is what makes entry and exit of second
+/// order: a force that jumps at contact counts for exactly the time it acts.
+#[inline(always)]
+pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> Option<(f64, f64)> {
+    let half = 0.5 * approach.abs() * dt;
+    if overlap >= half {
+        return Some((1.0, overlap));
+    }
+    let reach = overlap + half;
+    if reach <= 0.0 {
+        return None;
+    }
+    let presence = reach / (2.0 * half);
+    Some((presence, 0.5 * presence * reach))
+}
+
+/// One pass over the contacts of a block.
+pub(crate) struct Kernel<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> {
+    pub(crate) view: &'a View<'a, D>,
+    pub(crate) laws: Laws<'a, L>,
+    pub(crate) start: usize,
+    pub(crate) force: &'a mut [D::Vec],
+    pub(crate) torque: &'a mut [D::Spin],
+    pub(crate) tally: Tally<LEDGER>,
+    pub(crate) trouble: Option<Trouble>,
+}
+
+impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
+    #[inline(always)]
+    pub(crate) fn pairs(&mut self, list: &mut BlockList<L::Memory>, outgoing: &mut [Owed<D>]) {
+        let view = self.view;
+        let mut owed = 0;
+        for local in 0..self.force.len() {
+            let first = self.start + local;
+            let (position, radius) = (view.position[first], view.radius[first]);
+            let (mut force, mut torque) = (D::Vec::ZERO, D::Spin::ZERO);
+            let range = list.starts[local] as usize..list.starts[local + 1] as usize;
+            for (&partner, memory) in list.partners[range.clone()].iter().zip(&mut list.memory[range]) {
+                let second = partner as usize;
+                let abroad = second < self.start;
+                let arm = position - view.position[second];
+                let sum = radius + view.radius[second];
+                let reach = sum + view.margin;
+                let squared = arm.length_squared();
+                let met = if squared < reach * reach {
+                    meet_grain::<D, L>(view, first, second, arm, squared.sqrt())
+                } else {
+                    None
+                };
+                let mut given = Owed::default();
+                if let Some((meeting, arms)) = met {
+                    self.guard(first, sum - squared.sqrt(), radius.min(view.radius[second]));
+                    let law = self.laws.between(view.material_of(first), view.material_of(second));
+                    let load = law.load(&meeting, memory, &mut self.tally);
+                    let on_first = push_of::<D, L>(&load, meeting.normal);
+                    force += on_first;
+                    given.force = -on_first;
+                    if L::TANGENTIAL {
+                        torque += load.rolling - load.tangential * arms.0;
+                        given.torque = -load.rolling - load.tangential * arms.1;
+                    }
+                } else if *memory != L::Memory::default() {
+                    let law = self.laws.between(view.material_of(first), view.material_of(second));
+                    law.release(memory, &mut self.tally);
+                    *memory = L::Memory::default();
+                }
+                if abroad {
+                    outgoing[owed] = given;
+                    owed += 1;
+                } else if met.is_some() {
+                    let place = second - self.start;
+                    self.force[place] += given.force;
+                    if L::TANGENTIAL {
+                        self.torque[place] += given.torque;
+                    }
+                }
+            }
+            // Later grains of the block add to this one after it was set here.
+            self.force[local] = force;
+            if L::TANGENTIAL {
+                self.torque[local] = torque;
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn walls(&mut self, list: &mut BlockList<L::Memory>) {
+        let view = self.view;
+        self.tally.at_walls();
+        for (near, memory) in list.near_walls.iter().zip(&mut list.wall_memory) {
+            let first = near.grain as usize;
+            let wall = &view.walls[near.wall as usize];
+            let laws = self.laws;
+            let law = laws.between(view.material_of(first), wall.material.0);
+            let Some((meeting, arm)) = meet_wall::<D, L>(view, first, wall) else {
+                law.release(memory, &mut self.tally);
+                *memory = L::Memory::default();
+                continue;
+            };
+            self.guard(first, meeting.overlap, view.radius[first]);
+            let load = law.load(&meeting, memory, &mut self.tally);
+            let local = first - self.start;
+            self.force[local] += push_of::<D, L>(&load, meeting.normal);
+            if L::TANGENTIAL {
+                self.torque[local] += load.rolling - load.tangential * arm;
+            }
+        }
+    }
+
+    /// Notes a contact that is too deep; the step then ends in an error.
+    #[inline(always)]
+    fn guard(&mut self, first: usize, overlap: f64, radius: f64) {
+        if overlap > DEEPEST * radius {
+            self.trouble.get_or_insert(Trouble { first: first as u32, overlap, radius });
+        }
+    }
+}
+
+/// Force vector of a load.
+#[inline(always)]
+pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) -> D::Vec {
+    let along = normal * load.normal;
+    if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
+}
+
+/// The meeting of a body with another, if they meet within the step.
+#[inline(always)]
+fn meeting<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    own_arm: f64,
+    normal: D::Vec,
+    overlap: f64,
+    other: &Other<D>,
+) -> Option<Meeting<D>> {
+    let relative = view.velocity[first] - other.velocity;
+    let approach = -relative.dot(normal);
+    let (presence, overlap) = share_of_step(overlap, approach, view.dt)?;
+    let mut meeting = Meeting {
+        normal,
+        overlap,
+        presence,
+        approach,
+        slip: D::Spin::ZERO,
+        roll: D::Spin::ZERO,
+        start_slip: D::Spin::ZERO,
+        start_roll: D::Spin::ZERO,
+        twist: 0.0,
+        effective_mass: 0.0,
+        effective_radius: 0.0,
+        dt: view.dt,
+        last_dt: view.last_dt,
+    };
+    if L::TANGENTIAL {
+        let spin = view.spin[first];
+        let surface = D::tangential(spin * own_arm + other.spin * other.arm, normal);
+        meeting.slip = D::cross(normal, relative) - surface;
+        meeting.roll = D::tangential(spin - other.spin, normal);
+        meeting.twist = 0.5 * D::twist(spin + other.spin, normal);
+        let relative = view.start_velocity[first] - other.start_velocity;
+        let spin = view.start_spin[first];
+        let surface = D::tangential(spin * own_arm + other.start_spin * other.arm, normal);
+        meeting.start_slip = D::cross(normal, relative) - surface;
+        meeting.start_roll = D::tangential(spin - other.start_spin, normal);
+    }
+    Some(meeting)
+}
+
+/// The meeting of two grains at `distance` and their lever arms.
+#[inline(always)]
+fn meet_grain<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    second: usize,
+    arm: D::Vec,
+    distance: f64,
+) -> Option<(Meeting<D>, (f64, f64))> {
+    let (radius, mass) = (view.radius[first], view.mass[first]);
+    let (other_radius, other_mass) = (view.radius[second], view.mass[second]);
+    let overlap = radius + other_radius - distance;
+    let other = Other {
+        velocity: view.velocity[second],
+        spin: if L::TANGENTIAL { view.spin[second] } else { D::Spin::ZERO },
+        start_velocity: if L::TANGENTIAL { view.start_velocity[second] } else { D::Vec::ZERO },
+        start_spin: if L::TANGENTIAL { view.start_spin[second] } else { D::Spin::ZERO },
+        arm: other_radius - view.arm_share * overlap,
+    };
+    let own_arm = radius - view.arm_share * overlap;
+    let normal = arm * (1.0 / distance);
+    let mut meeting = meeting::<D, L>(view, first, own_arm, normal, overlap, &other)?;
+    meeting.effective_mass = mass * other_mass / (mass + other_mass);
+    if L::TANGENTIAL {
+        meeting.effective_radius = radius * other_radius / (radius + other_radius);
+    }
+    Some((meeting, (own_arm, other.arm)))
+}
+
+/// The meeting of a grain and a wall, and the lever arm.
+#[inline(always)]
+pub(crate) fn meet_wall<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    wall: &Wall<D>,
+) -> Option<(Meeting<D>, f64)> {
+    let radius = view.radius[first];
+    let (distance, normal) = wall.shape.distance(view.position[first]);
+    let overlap = radius - distance;
+    let still = Other {
+        velocity: D::Vec::ZERO,
+        spin: D::Spin::ZERO,
+        start_velocity: D::Vec::ZERO,
+        start_spin: D::Spin::ZERO,
+        arm: 0.0,
+    };
+    // A wall does not give way: the contact lies on its surface.
+    let arm = radius - 2.0 * view.arm_share * overlap;
+    let mut meeting = meeting::<D, L>(view, first, arm, normal, overlap, &still)?;
+    meeting.effective_mass = view.mass[first];
+    meeting.effective_radius = radius;
+    Some((meeting, arm))
+}
+
+/// The meeting of two grains that overlap now.
+pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    second: usize,
+) -> Option<Meeting<D>> {
+    let arm = view.position[first] - view.position[second];
+    let distance = arm.length();
+    let overlap = view.radius[first] + view.radius[second] - distance;
+    let met = if overlap > 0.0 && distance > 0.0 {
+        meet_grain::<D, L>(view, first, second, arm, distance)
+    } else {
+        None
+    };
+    met.map(|(meeting, _)| meeting)
+}

@@ -1,0 +1,73 @@
+//! What a simulation is made of.
+
+use crate::grains::Grain;
+use crate::material::{Materials, SetupError, Tension};
+use crate::wall::Wall;
+use granular_core::Dim;
+
+/// Where a contact force acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LeverArm {
+    /// At the middle of the overlap: angular momentum is kept to round-off.
+    #[default]
+    Exact,
+    /// At the radius, as in the thesis \[Kumar2014, eq. 3.43\]: angular momentum is off by the
+    /// overlap over the radius.
+    Radius,
+}
+
+/// Choices of the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Whether parting contacts may pull.
+    pub tension: Tension,
+    /// Where a contact force acts.
+    pub lever_arm: LeverArm,
+    /// Whether losses of energy are integrated. Costs a few per cent; off unless asked for.
+    pub ledger: bool,
+    /// Steps in the shortest contact time, for the recommended step.
+    pub steps_per_contact: f64,
+    /// Reach of the neighbour lists over the mean diameter.
+    pub skin: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tension: Tension::Cut,
+            lever_arm: LeverArm::Exact,
+            ledger: false,
+            steps_per_contact: 25.0,
+            skin: 0.25,
+        }
+    }
+}
+
+/// All that makes a simulation.
+#[derive(Clone, Debug)]
+pub struct Setup<D: Dim> {
+    /// Materials of grains and walls.
+    pub materials: Materials,
+    /// Grains; their index is their stable identifier.
+    pub grains: Vec<Grain<D>>,
+    /// Walls.
+    pub walls: Vec<Wall<D>>,
+    /// Gravity \[m/s^2\].
+    pub gravity: D::Vec,
+    /// Choices of the method.
+    pub options: Options,
+}
+
+pub(crate) fn check_options(options: &Options, gravity_is_finite: bool) -> Result<(), SetupError> {
+    let fits = |value: f64| value.is_finite() && value > 0.0;
+    if !fits(options.steps_per_contact) || options.steps_per_contact < 1.0 {
+        return Err(SetupError::new("steps per contact", options.steps_per_contact, "at least 1"));
+    }
+    if !fits(options.skin) {
+        return Err(SetupError::new("skin", options.skin, "positive and finite"));
+    }
+    if !gravity_is_finite {
+        return Err(SetupError::new("gravity", f64::NAN, "finite"));
+    }
+    Ok(())
+}

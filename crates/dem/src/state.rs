@@ -1,0 +1,53 @@
+//! What a snapshot holds: grains, memories of contacts, and what changes between stages.
+
+use crate::dem::Dem;
+use crate::grains::check_finite;
+use crate::ledger::Losses;
+use crate::material::MaterialId;
+use granular_core::{Dim, Linear, Section, SnapshotError};
+
+impl<D: Dim> Dem<D> {
+    pub(crate) fn save_state(&self, to: &mut Section) {
+        self.grains.save(to);
+        self.pairs.save(&self.grains, to);
+        to.put_one("steps", self.steps);
+        to.put_one("last step taken", self.last_dt);
+        to.put("gravity", &[self.gravity]);
+        to.put("losses", &self.losses.to_array());
+        to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
+        let open: Vec<u8> = self.walls.iter().map(|wall| u8::from(wall.open)).collect();
+        to.put("open walls", &open);
+        let friction: Vec<f64> =
+            (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
+        to.put("friction", &friction);
+    }
+
+    pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let friction: Vec<f64> = from.array_of("friction", self.materials.len())?;
+        for (k, &value) in friction.iter().enumerate() {
+            self.materials.set_friction(MaterialId(k as u8), value);
+        }
+        // Not asked of the friction: grains go on turning after it was taken away.
+        let turning = !from.array::<D::Spin>("spin")?.is_empty();
+        self.take_materials(turning);
+        self.grains.restore(from)?;
+        self.pairs.restore(from, &self.grains)?;
+        self.steps = from.one("steps")?;
+        self.last_dt = from.one("last step taken")?;
+        self.gravity = from.array_of("gravity", 1)?[0];
+        let losses: Vec<f64> = from.array_of("losses", 5)?;
+        self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
+        let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;
+        self.injected = energy[0];
+        self.initial_energy = self.options.ledger.then_some(energy[1]);
+        let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
+        self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
+        check_finite("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
+        check_finite("last step taken", self.last_dt.is_finite() && self.last_dt >= 0.0)?;
+        check_finite("gravity", self.gravity.is_finite())?;
+        check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
+        check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
+        self.list(0.0, None);
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! Benchmarks: error against run time, and speed.
+//!
+//! [`precision`] studies measure how the error of a case falls with what a run costs; they give a
+//! [`Study`] with its Pareto front and fitted orders. [`speed`] measures how many grain-steps a
+//! second the solver takes.
+
+mod column;
+mod figure;
+mod restitution;
+pub mod speed;
+mod state;
+mod study;
+mod triad;
+
+pub use study::{Point, Study};
+
+use crate::failure::Failure;
+use std::path::Path;
+
+/// A work-precision study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Restitution of a normal impact over the step, for both treatments of tension.
+    Restitution,
+    /// Run-out of a column over stiffness and step, as a mean over seeds.
+    Column,
+}
+
+impl Precision {
+    /// Name, also that of its folder.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Restitution => "restitution",
+            Self::Column => "column",
+        }
+    }
+}
+
+/// Runs a study.
+///
+/// # Errors
+/// When a run fails.
+pub fn precision(case: Precision) -> Result<Study, Failure> {
+    match case {
+        Precision::Restitution => restitution::study(),
+        Precision::Column => column::study(),
+    }
+}
+
+/// Writes `points.csv`, `precision.svg` and `precision.png` of a study to a folder.
+///
+/// # Errors
+/// When something cannot be written.
+pub fn save(study: &Study, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), error))?;
+    figure::chart(study).figure().save(&folder.join("precision"))?;
+    let csv = study.csv();
+    granular_io::write_atomically(&folder.join("points.csv"), |file| file.write_all(csv.as_bytes()))?;
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! Grain-steps a second of the discrete element method on a collapsing column.
+//!
+//! Disks of 0.92 to 1.38 mm, spread evenly by number, density 2650 kg/m³, normal and tangential
+//! stiffness 1.6e6 N/m, friction 0.53 everywhere, restitution 0.75, no tangential damping, a floor
+//! and a left wall; the step is 1/50 of the contact time of the mean pair. Up to 20 000 disks are
+//! timed in flight, half of `sqrt(H/g)` after the gate of an aspect ratio of 0.8 has opened; more
+//! have just been let go.
+//!
+//! The share of the bandwidth is an estimate from above: it takes every byte that the solver
+//! holds for a grain as read once and written once a step, against a triad that the same threads
+//! run. Small samples stay in the caches, where the share says nothing.
+
+use super::state::{self, Disk};
+use super::triad;
+use crate::failure::Failure;
+use crate::validate::fit::median;
+use crate::validate::parallel::pool;
+use granular_core::Solver;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Steps before the clock starts.
+const WARM_UP: u64 = 200;
+/// A timed window lasts at least this long.
+const WINDOW: Duration = Duration::from_secs(1);
+/// Grain-steps between looks at the clock.
+const GLANCE: usize = 1_000_000;
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Numbers of disks; not used with a state.
+    pub sizes: Vec<usize>,
+    /// Numbers of threads.
+    pub threads: Vec<usize>,
+    /// Windows that the median is taken of.
+    pub repeats: usize,
+    /// File with a state to measure on.
+    pub state: Option<PathBuf>,
+    /// Folder to write the states to.
+    pub write_state: Option<PathBuf>,
+}
+
+/// A measured speed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Speed {
+    /// Scene.
+    pub scene: String,
+    /// Law and scheme.
+    pub scheme: &'static str,
+    /// Number of disks.
+    pub n: usize,
+    /// Threads.
+    pub threads: usize,
+    /// Median speed.
+    pub rate: f64,
+    /// Unit of the speed.
+    pub unit: &'static str,
+    /// Bytes that the solver holds for a grain.
+    pub bytes_per_item: usize,
+    /// Bytes moved over those that a triad moves in the same time; an estimate from above.
+    pub bandwidth_share: f64,
+}
+
+/// Measures the discrete element method.
+///
+/// # Errors
+/// When a state cannot be made, read or written, or the solver gives up.
+pub fn dem(request: &Request) -> Result<Vec<Speed>, Failure> {
+    let mut bandwidths = Vec::new();
+    for &threads in &request.threads {
+        bandwidths.push(pool(threads)?.install(triad::bandwidth));
+    }
+    let sources: Vec<Option<usize>> = match request.state {
+        Some(_) => vec![None],
+        None => request.sizes.iter().map(|&size| Some(size)).collect(),
+    };
+    let mut speeds = Vec::new();
+    for source in sources {
+        let (scene, disks) = load(request, source)?;
+        if let Some(folder) = &request.write_state {
+            std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), error))?;
+            state::write(&disks, &folder.join(format!("state2d_{}.txt", disks.len())))?;
+        }
+        for (&threads, &bandwidth) in request.threads.iter().zip(&bandwidths) {
+            speeds.push(measure(&scene, &disks, (threads, bandwidth), request.repeats)?);
+        }
+    }
+    Ok(speeds)
+}
+
+fn load(request: &Request, size: Option<usize>) -> Result<(String, Vec<Disk>), Failure> {
+    match (&request.state, size) {
+        (None, Some(size)) => Ok(("column collapse".to_owned(), state::falling(size)?)),
+        (Some(path), _) => Ok((path.display().to_string(), state::read(path)?)),
+        (None, None) => Ok((String::new(), Vec::new())),
+    }
+}
+
+fn measure(
+    scene: &str,
+    disks: &[Disk],
+    (threads, bandwidth): (usize, f64),
+    repeats: usize,
+) -> Result<Speed, Failure> {
+    let mut bytes_per_item = 0;
+    let mut rates = Vec::new();
+    for _ in 0..repeats.max(1) {
+        // The same state every time, so that repeats differ by chance only.
+        let mut dem = state::simulation(disks)?;
+        rates.push(pool(threads)?.install(|| -> Result<f64, Failure> {
+            dem.advance(state::DT, WARM_UP)?;
+            let glance = (GLANCE / disks.len().max(1)).max(1) as u64;
+            let (begun, mut steps) = (Instant::now(), 0);
+            while begun.elapsed() < WINDOW {
+                dem.advance(state::DT, glance)?;
+                steps += glance;
+            }
+            Ok(steps as f64 * disks.len() as f64 / begun.elapsed().as_secs_f64())
+        })?);
+        bytes_per_item = dem.memory().bytes_per_item;
+    }
+    let rate = median(rates);
+    Ok(Speed {
+        scene: scene.to_owned(),
+        scheme: "leapfrog, linear with friction, tension cut",
+        n: disks.len(),
+        threads,
+        rate,
+        unit: "grain-steps/s",
+        bytes_per_item,
+        bandwidth_share: 2.0 * bytes_per_item as f64 * rate / bandwidth,
+    })
+}
+
+/// Speeds as a table.
+pub fn table(speeds: &[Speed]) -> String {
+    let mut text = format!(
+        "{:<30} {:>8} {:>8} {:>16} {:>12} {:>16}\n",
+        "scene", "disks", "threads", "grain-steps/s", "bytes/grain", "bandwidth share"
+    );
+    for speed in speeds {
+        let Speed { scene, n, threads, rate, bytes_per_item, bandwidth_share, .. } = speed;
+        text += &format!(
+            "{scene:<30} {n:>8} {threads:>8} {rate:>16.3e} {bytes_per_item:>12} {bandwidth_share:>16.2}\n"
+        );
+    }
+    text
+}

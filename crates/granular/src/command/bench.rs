@@ -1,0 +1,88 @@
+//! `granular bench`.
+
+use super::{Common, show};
+use clap::{Args, Subcommand, ValueEnum};
+use granular::bench::{self, Precision, speed};
+use granular::failure::Failure;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// What `granular bench` measures.
+#[derive(Subcommand, Debug)]
+pub(super) enum Bench {
+    /// Error against run time, as a table and a figure.
+    Precision {
+        /// Study.
+        case: Case,
+        /// Folder for the figure and the points; `bench/<case>` by default.
+        #[arg(short, long, value_name = "FOLDER")]
+        out: Option<PathBuf>,
+    },
+    /// Steps a second over sizes and threads.
+    Speed {
+        /// Solver.
+        solver: Solver,
+        #[command(flatten)]
+        flags: Speed,
+    },
+}
+
+/// Studies.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Case {
+    /// Restitution of a normal impact over the step.
+    Restitution,
+    /// Run-out of a column over stiffness and step; takes minutes.
+    Column,
+}
+
+/// Solvers.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Solver {
+    /// Discrete element method.
+    Dem,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct Speed {
+    /// Numbers of grains.
+    #[arg(long, value_delimiter = ',', default_value = "3000,13000,100000")]
+    sizes: Vec<usize>,
+    /// Numbers of threads, each in a pool of its own.
+    #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
+    pools: Vec<usize>,
+    /// Windows of one second; the median is shown.
+    #[arg(long, default_value_t = 3, value_name = "N")]
+    repeats: usize,
+    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r`.
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Write the states that were measured on to this folder.
+    #[arg(long, value_name = "FOLDER")]
+    write_state: Option<PathBuf>,
+}
+
+impl Bench {
+    pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
+        match self {
+            Self::Precision { case, out } => {
+                let case = match case {
+                    Case::Restitution => Precision::Restitution,
+                    Case::Column => Precision::Column,
+                };
+                let study = bench::precision(case)?;
+                let folder = out.unwrap_or_else(|| Path::new("bench").join(case.name()));
+                bench::save(&study, &folder)?;
+                let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
+                show(common, &json!(study), || format!("{study}{files}"));
+            }
+            Self::Speed { solver: Solver::Dem, flags } => {
+                let Speed { sizes, pools: threads, repeats, state, write_state } = flags;
+                let request = speed::Request { sizes, threads, repeats, state, write_state };
+                let speeds = speed::dem(&request)?;
+                show(common, &json!(speeds), || speed::table(&speeds));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,149 @@
+//! Whether outputs and figures ask only for what there is, and write only where they may.
+
+use super::{Problems, nearest};
+use crate::folder::RESERVED;
+use crate::scene::{EverySpec, FigureSpec, Scene, Writer};
+use granular_core::{ShownAs, Solver};
+use std::path::{Component, Path};
+
+/// Checks of schedules and files.
+pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
+    let mut taken: Vec<Vec<String>> = Vec::new();
+    for (k, output) in scene.outputs.iter().enumerate() {
+        let (positive, shown) = match output.every {
+            EverySpec::Time(time) => (time.value() > 0.0, time.to_string()),
+            EverySpec::Steps(steps) => (steps > 0, steps.to_string()),
+        };
+        if !positive {
+            problems.add(format!("outputs.{k}.every"), shown, "a positive interval", "");
+        }
+        if cfg!(not(feature = "hdf5")) && matches!(output.write, Writer::Hdf5 { .. }) {
+            let hint = "Fields writes the same for ParaView without it";
+            let value = "Hdf5, which this program was built without";
+            problems.add(
+                format!("outputs.{k}.write"),
+                value,
+                "a program with the cargo feature `hdf5`",
+                hint,
+            );
+        }
+        let place = format!("outputs.{k}.write.path");
+        let path = output.write.path();
+        if check_path(&place, path, problems) {
+            let files = match output.write {
+                Writer::Table { .. } => vec![path.to_owned()],
+                Writer::Fields { .. } | Writer::Contacts { .. } => {
+                    vec![path.to_owned(), format!("{path}.pvd")]
+                }
+                Writer::Hdf5 { .. } => vec![path.to_owned(), format!("{path}.vtkhdf")],
+            };
+            claim(&place, path, files, &mut taken, problems);
+        }
+    }
+    for (k, figure) in scene.figures.iter().enumerate() {
+        let place = format!("figures.{k}.path");
+        let path = figure.path();
+        if check_path(&place, path, problems) {
+            let files = vec![format!("{path}.svg"), format!("{path}.png")];
+            claim(&place, path, files, &mut taken, problems);
+        }
+        let (key, empty) = match figure {
+            FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
+            FigureSpec::Flow { times, .. } => ("times", times.is_empty()),
+            _ => ("", false),
+        };
+        if empty {
+            problems.add(format!("figures.{k}.{key}"), "empty", "at least one", "");
+        }
+    }
+}
+
+/// Whether a path may be written to.
+fn check_path(place: &str, path: &str, problems: &mut Problems) -> bool {
+    let mut parts = Path::new(path).components();
+    let inside = !path.is_empty() && parts.all(|part| matches!(part, Component::Normal(_)));
+    if !inside || path.ends_with('/') || path.contains(char::is_control) {
+        let allowed = "a relative path inside the run folder, such as `series.csv` or `frames/grains`";
+        problems.add(place, format!("`{path}`"), allowed, "");
+        return false;
+    }
+    let first = path.split('/').next().unwrap_or_default();
+    if RESERVED.contains(&first) {
+        let value = format!("`{path}`, which the run itself writes");
+        problems.add(place, value, format!("any name but {}", RESERVED.join(", ")), "");
+        return false;
+    }
+    true
+}
+
+/// Refuses files that an output or figure before writes too.
+fn claim(place: &str, path: &str, files: Vec<String>, taken: &mut Vec<Vec<String>>, problems: &mut Problems) {
+    if taken.iter().flatten().any(|other| files.contains(other)) {
+        problems.add(place, format!("`{path}` again"), "a file of its own", "");
+    }
+    taken.push(files);
+}
+
+/// Checks of probes, fields and columns.
+pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+    let shown = solver.shown();
+    let mut unknown = Vec::new();
+    for (k, output) in scene.outputs.iter().enumerate() {
+        let (key, kind) = match &output.write {
+            Writer::Table { .. } => ("probes", ShownAs::Number),
+            Writer::Fields { .. } | Writer::Hdf5 { .. } => ("fields", ShownAs::Field),
+            Writer::Contacts { .. } => ("fields", ShownAs::Link),
+        };
+        let names = output.write.names();
+        let known: Vec<&str> = shown.iter().filter(|s| s.kind == kind).map(|s| s.name.as_str()).collect();
+        for (n, name) in names.iter().enumerate() {
+            let path = format!("outputs.{k}.write.{key}.{n}");
+            if !known.contains(&name.as_str()) {
+                let hint = nearest(name, known.iter().copied());
+                problems.add(path, format!("`{name}`, which nothing shows"), known.join(", "), hint);
+                unknown.push(output.write.path());
+            } else if names[..n].contains(name) {
+                problems.add(path, format!("`{name}` again"), "each name once", "");
+            }
+        }
+    }
+    check_figures(scene, &unknown, problems);
+}
+
+/// Whether figures draw from outputs that hold what they need. Outputs with `unknown` names have
+/// been blamed: what seems to lack is perhaps only misspelt.
+fn check_figures(scene: &Scene, unknown: &[&str], problems: &mut Problems) {
+    for (k, figure) in scene.figures.iter().enumerate() {
+        let need = figure.needs();
+        let place = format!("figures.{k}.{}", need.key);
+        let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
+        let found = of_kind.clone().find(|output| output.write.path() == need.output);
+        if let Some(output) = found {
+            let lacks = |name: &&str| !output.write.names().iter().any(|other| other == name);
+            let lacking: Vec<String> =
+                need.names.iter().copied().filter(lacks).map(|name| format!("\"{name}\"")).collect();
+            if !lacking.is_empty() && !unknown.contains(&need.output) {
+                let lacking = lacking.join(", ");
+                let value = format!("`{}`, which does not hold {lacking}", need.output);
+                let allowed = format!("a {} with {}", need.writer, need.names.join(", "));
+                problems.add(place, value, allowed, format!("add {lacking} to the output `{}`", need.output));
+            }
+        } else {
+            let known: Vec<&str> = of_kind.map(|output| output.write.path()).collect();
+            let hint = nearest(need.output, known.iter().copied());
+            let value = format!("`{}`, which no {} writes", need.output, need.writer);
+            let allowed = match known.as_slice() {
+                [] => format!("the path of a {}; add one to the outputs", need.writer),
+                _ => format!("the path of a {}: {}", need.writer, known.join(", ")),
+            };
+            problems.add(place, value, allowed, hint);
+        }
+        if let Some(stage) = need.stage.filter(|s| !scene.stages.iter().any(|other| other.name == *s)) {
+            let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+            let hint = nearest(stage, known.iter().copied());
+            let value = format!("`{stage}`, which is no stage of this scene");
+            let allowed = format!("a stage of this scene: {}", known.join(", "));
+            problems.add(format!("figures.{k}.stage"), value, allowed, hint);
+        }
+    }
+}

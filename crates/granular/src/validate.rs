@@ -1,0 +1,119 @@
+//! Validation: cases with known answers, and how near this program comes.
+//!
+//! A [`Case`] gives [`Row`]s, each a measured number beside its reference. A row that gates must
+//! pass; one that does not is a claim of the literature, printed with its verdict and the reason
+//! for a difference. Sources, set-ups and weaknesses are in `validation/<case>/README.md`.
+//!
+//! ```
+//! use granular::validate::{Effort, find};
+//! let rows = find(Some("grading"))?[0].run(Effort::Quick);
+//! assert!(rows.iter().all(|row| row.pass));
+//! # Ok::<(), granular::failure::Failure>(())
+//! ```
+
+pub(crate) mod chance;
+mod claims;
+pub(crate) mod collapse;
+mod conservation;
+pub(crate) mod fit;
+mod grading;
+pub(crate) mod impact;
+mod incline;
+mod oblique;
+pub(crate) mod parallel;
+mod plane;
+mod reference;
+pub(crate) mod restitution;
+mod rolling;
+mod row;
+mod table;
+
+pub use row::{Row, Tier};
+pub use table::table;
+
+use crate::failure::Failure;
+use crate::model::nearest;
+use row::{Measure, Rows};
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// Small samples, at most about ten seconds a case.
+    #[default]
+    Quick,
+    /// Everything.
+    Full,
+}
+
+/// A validation case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Name, also that of its folder in `validation/`.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub about: &'static str,
+    run: fn(&mut Rows, Effort) -> Result<(), Failure>,
+}
+
+/// All cases.
+pub const CASES: &[Case] = &[
+    Case { name: "disk_on_incline", about: "a disk slips or rolls down 45 degrees", run: incline::disk },
+    Case { name: "ball_on_incline", about: "a sphere slips or rolls down 45 degrees", run: incline::sphere },
+    Case {
+        name: "restitution",
+        about: "restitution for both treatments of tension",
+        run: restitution::error,
+    },
+    Case { name: "contact_time", about: "contact time and largest overlap", run: restitution::contact },
+    Case { name: "oblique_impact", about: "gross sliding and sticking on a plane", run: oblique::run },
+    Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
+    Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
+    Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
+    Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
+    Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
+    Case { name: "column_runout", about: "run-out of a column of aspect ratio 0.8", run: claims::run_out },
+];
+
+impl Case {
+    /// Runs the case. A solver that gives up is a row that fails.
+    pub fn run(&self, effort: Effort) -> Vec<Row> {
+        let mut rows = Rows::new(self.name);
+        if let Err(failure) = (self.run)(&mut rows, effort) {
+            let stopped = Measure::absolute(Tier::Identity, "the case runs to its end", f64::NAN, 0.0, 0.0);
+            rows.add(stopped.note(failure.to_string()));
+        }
+        rows.finish()
+    }
+}
+
+/// The cases whose name contains `filter`; all without one.
+///
+/// # Errors
+/// When there is none.
+pub fn find(filter: Option<&str>) -> Result<Vec<Case>, Failure> {
+    let wanted = filter.unwrap_or_default();
+    let found: Vec<Case> = CASES.iter().copied().filter(|case| case.name.contains(wanted)).collect();
+    if found.is_empty() {
+        let names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+        let known = names.join(", ");
+        let hint = nearest(wanted, names);
+        return Err(Failure::Io(format!("no validation case is called `{wanted}`; {hint} known: {known}")));
+    }
+    Ok(found)
+}
+
+/// What a run of cases comes to.
+///
+/// # Errors
+/// When a gating row failed.
+pub fn verdict(rows: &[Row]) -> Result<(), Failure> {
+    let failed: Vec<String> = rows
+        .iter()
+        .filter(|row| row.gate && !row.pass)
+        .map(|row| format!("{}: {}", row.case, row.metric))
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Invalid(format!("{} of {} rows failed: {}", failed.len(), rows.len(), failed.join("; "))))
+}

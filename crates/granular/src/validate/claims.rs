@@ -1,0 +1,78 @@
+//! Run-out of a column: the band of the literature, and what single sources claim.
+
+use super::Effort;
+use super::collapse::{Collapse, Fallen};
+use super::fit::mean_and_error;
+use super::parallel;
+use super::reference::named;
+use super::row::{Measure, Rows, Tier};
+use crate::failure::Failure;
+use granular_validation_data::COLUMN_RUNOUT;
+
+/// Run-out over aspect ratio in two dimensions: Lube et al. 2005, and the farthest simulations.
+const BAND: [f64; 2] = [1.2, 2.8];
+/// Share by which a claim may be missed.
+const NEAR: f64 = 0.15;
+
+pub(super) fn run_out(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
+    let samples: &[(usize, u64)] =
+        if effort == Effort::Full { &[(400, 8), (1000, 6), (3000, 4)] } else { &[(400, 3)] };
+    for &(grains, seeds) in samples {
+        let seeds: Vec<u64> = (1..=seeds).collect();
+        let fallen = parallel::each(&seeds, |&seed| Collapse::of(grains).seed(seed).run())?;
+        band(rows, grains, &fallen);
+        claims(rows, grains, &fallen);
+    }
+    Ok(())
+}
+
+fn listed(values: &[f64]) -> String {
+    values.iter().map(|value| format!("{value:.3}")).collect::<Vec<_>>().join(" ")
+}
+
+fn band(rows: &mut Rows, grains: usize, fallen: &[Fallen]) {
+    let shares: Vec<f64> = fallen.iter().map(|one| one.run_out() / one.aspect_ratio()).collect();
+    let aspects: Vec<f64> = fallen.iter().map(Fallen::aspect_ratio).collect();
+    let (mean, error) = mean_and_error(&shares);
+    let middle = 0.5 * (BAND[0] + BAND[1]);
+    let metric = format!("{grains} disks: run-out over a, mean of {} seeds", fallen.len());
+    let measure = Measure::absolute(Tier::OtherCode, metric, mean, middle, 0.5 * (BAND[1] - BAND[0]));
+    rows.add(measure.note(format!(
+        "the band is {} to {} (Lube et al. 2005; two-dimensional simulations); standard error {error:.3}; \
+         by seed {}; a at the opening of the gate {}",
+        BAND[0],
+        BAND[1],
+        listed(&shares),
+        listed(&aspects)
+    )));
+}
+
+fn claims(rows: &mut Rows, grains: usize, fallen: &[Fallen]) {
+    let run_outs: Vec<f64> = fallen.iter().map(Fallen::run_out).collect();
+    let (mean, error) = mean_and_error(&run_outs);
+    let (least, most) =
+        run_outs.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &r| (low.min(r), high.max(r)));
+    let reasons = [
+        (
+            "experiment",
+            Tier::Experiment,
+            "a channel with friction at its sides, thousands of beads; here a plane",
+        ),
+        (
+            "thesis DEM",
+            Tier::Thesis,
+            "the text does not give density, stiffness as run, or seeds of this sample",
+        ),
+        ("thesis DEM loose", Tier::Thesis, "79 % solid and sizes over a range of 1.8; here a deposit of 1.5"),
+        ("thesis DEM dense", Tier::Thesis, "83 % solid and sizes over a range of 1.8; here a deposit of 1.5"),
+    ];
+    for (name, tier, reason) in reasons {
+        let reference = named(COLUMN_RUNOUT, name, "run_out");
+        let metric = format!("{grains} disks: run-out against the {name}");
+        let measure = Measure::relative(tier, metric, mean, reference, NEAR).claim();
+        rows.add(measure.note(format!(
+            "mean of {} seeds with standard error {error:.3}, from {least:.3} to {most:.3}; {reason}",
+            fallen.len()
+        )));
+    }
+}

@@ -1,0 +1,183 @@
+//! A column collapse in memory: the template scene, run stage by stage without a run folder.
+
+use crate::check;
+use crate::failure::Failure;
+use crate::model::{self, Model};
+use crate::observers::{Rest, number_of};
+use crate::scene::{End, Scene};
+use crate::scene_file::SceneText;
+use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+/// Simulated time between looks at the energy residual \[s\].
+const LOOK: f64 = 1e-3;
+/// Time from the opening of the gate to the end, in units of sqrt(H/g); flow ends at about 3.5
+/// \[Kumar2014, section 4.2\].
+const DURATION: f64 = 8.0;
+
+/// A column collapse to be run.
+#[derive(Clone, Debug)]
+pub(crate) struct Collapse {
+    grains: usize,
+    seed: u64,
+    ledger: bool,
+    edits: Vec<String>,
+}
+
+/// What came of a collapse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fallen {
+    /// Width of the column \[m\].
+    pub(crate) width: f64,
+    /// Height of the main mass when the gate opens \[m\].
+    pub(crate) height: f64,
+    /// Front of the main mass at the end \[m\].
+    pub(crate) front: f64,
+    /// Largest energy residual over the potential energy at the start; zero without a ledger.
+    pub(crate) largest_residual: f64,
+    /// Steps taken.
+    pub(crate) steps: u64,
+    /// Step during the collapse \[s\].
+    pub(crate) dt: f64,
+    /// Wall time of the steps \[s\].
+    pub(crate) seconds: f64,
+}
+
+impl Fallen {
+    /// Height over width when the gate opens.
+    pub(crate) fn aspect_ratio(&self) -> f64 {
+        self.height / self.width
+    }
+
+    /// `(L - L0) / L0`.
+    pub(crate) fn run_out(&self) -> f64 {
+        (self.front - self.width) / self.width
+    }
+}
+
+impl Collapse {
+    /// The template with so many grains.
+    pub(crate) fn of(grains: usize) -> Self {
+        Self { grains, seed: 1, ledger: false, edits: Vec::new() }
+    }
+
+    /// With the energy ledger.
+    pub(crate) fn with_ledger(self) -> Self {
+        Self { ledger: true, ..self }
+    }
+
+    /// With another seed.
+    pub(crate) fn seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// With a change of the scene.
+    pub(crate) fn set(mut self, edit: String) -> Self {
+        self.edits.push(edit);
+        self
+    }
+
+    fn scene(&self) -> Result<SceneText, Failure> {
+        let template = crate::TEMPLATES.iter().find(|(name, _)| *name == "column-collapse");
+        let (name, text) = template.expect("there is a template of a column collapse");
+        let mut text = SceneText::new(*name, *text);
+        text.set(&format!("sample.extent=Grains({})", self.grains))?;
+        text.set(&format!("sample.seed={}", self.seed))?;
+        if !self.ledger {
+            text.set("figures=[]")?;
+            text.set("outputs=[]")?;
+        }
+        self.edits.iter().try_for_each(|edit| text.set(edit))?;
+        Ok(text)
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// When the scene is wrong or refused, or the solver gives up.
+    pub(crate) fn run(&self) -> Result<Fallen, Failure> {
+        let (scene, mut model) = check::read(&self.scene()?)?;
+        let (_, steps, problems) = check::limits_of(&scene, &model);
+        if !problems.is_empty() {
+            return Err(Failure::Refused(problems));
+        }
+        let begun = Instant::now();
+        let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
+        let scale = number(&model, "potential_energy");
+        let column = model.column.expect("the template is a column");
+        let mut residual = 0.0_f64;
+        let mut height = f64::NAN;
+        for (index, &dt) in steps.iter().enumerate() {
+            // The grains that the gate lets go: the state at the start of the last stage.
+            height = number(&model, "height");
+            let longest = DURATION * (column.height / gravity(&scene)).sqrt();
+            let longest = (index + 1 == steps.len()).then_some(longest);
+            residual = residual.max(self.stage(&scene, &mut model, index, dt, longest)?);
+        }
+        Ok(Fallen {
+            width: column.width,
+            height,
+            front: number(&model, "front"),
+            largest_residual: residual / scale,
+            steps: model.simulation.clock().step(),
+            dt: model.simulation.clock().dt(),
+            seconds: begun.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Runs a stage, for at most `longest` if given, and returns the largest energy residual.
+    fn stage(
+        &self,
+        scene: &Scene,
+        model: &mut Model,
+        index: usize,
+        dt: f64,
+        longest: Option<f64>,
+    ) -> Result<f64, Failure> {
+        for action in &model.stages[index] {
+            model::apply(action, model.simulation.solver_mut());
+        }
+        model.simulation.begin_segment(dt)?;
+        let mut observers = Vec::new();
+        let duration = match scene.stages[index].end {
+            End::For(time) => time.value(),
+            End::Quiet { kinetic_over_potential, within } => {
+                let rested = Arc::new(AtomicBool::new(false));
+                observers.push(Rest::scheduled(kinetic_over_potential, within.value(), rested));
+                within.value()
+            }
+        };
+        let largest = Arc::new(Mutex::new(0.0));
+        if self.ledger {
+            let watch = Watch { largest: largest.clone() };
+            observers.push(Scheduled::new("residual", Every::Time(LOOK), Box::new(watch)));
+        }
+        let duration = longest.map_or(duration, |longest| duration.min(longest));
+        model.simulation.run(duration, &mut observers, &AtomicBool::new(false))?;
+        let largest = *largest.lock().expect("the observer does not panic");
+        Ok(largest)
+    }
+}
+
+fn gravity(scene: &Scene) -> f64 {
+    scene.gravity.iter().map(|component| component.value().powi(2)).sum::<f64>().sqrt()
+}
+
+/// Remembers the largest energy residual.
+struct Watch {
+    largest: Arc<Mutex<f64>>,
+}
+
+impl Observer for Watch {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let residual = number_of(simulation, "energy_residual").unwrap_or(f64::NAN).abs();
+        let mut largest = self.largest.lock().expect("only this thread holds it");
+        // A residual that is not a number must not get lost in a comparison.
+        if residual.is_nan() || residual > *largest {
+            *largest = residual;
+        }
+        Ok(Flow::Continue)
+    }
+}

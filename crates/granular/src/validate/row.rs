@@ -1,0 +1,166 @@
+//! Rows of a validation, and how they are measured.
+
+use serde::Serialize;
+use std::time::Instant;
+
+/// The evidence behind a reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Tier {
+    /// An exact solution.
+    ClosedForm,
+    /// The order of convergence.
+    Order,
+    /// A conserved quantity.
+    Conservation,
+    /// Something that holds by definition.
+    Identity,
+    /// An experiment.
+    Experiment,
+    /// Another code.
+    OtherCode,
+    /// A figure or number of \[Kumar2014\].
+    Thesis,
+}
+
+/// One measured number beside its reference.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Case.
+    pub case: &'static str,
+    /// Solver, or what else was measured.
+    pub solver: &'static str,
+    /// Evidence.
+    pub tier: Tier,
+    /// What was measured, with its unit.
+    pub metric: String,
+    /// The measured value.
+    pub value: f64,
+    /// What it should be.
+    pub reference: f64,
+    /// Distance from the reference, as compared with the tolerance: relative unless the note says
+    /// otherwise.
+    pub error: f64,
+    /// Largest error that passes.
+    pub tolerance: f64,
+    /// Whether it passes.
+    pub pass: bool,
+    /// Whether a failure makes the validation fail.
+    pub gate: bool,
+    /// Wall time spent on it \[s\].
+    pub seconds: f64,
+    /// What else there is to know.
+    pub note: String,
+}
+
+/// A measurement before it is a row.
+#[derive(Clone, Debug)]
+pub(crate) struct Measure {
+    tier: Tier,
+    metric: String,
+    value: f64,
+    reference: f64,
+    error: f64,
+    tolerance: f64,
+    gate: bool,
+    solver: &'static str,
+    note: String,
+}
+
+impl Measure {
+    /// Judged by an error that the caller worked out.
+    pub(crate) fn judged(
+        tier: Tier,
+        metric: impl Into<String>,
+        [value, reference]: [f64; 2],
+        error: f64,
+        tolerance: f64,
+    ) -> Self {
+        let (metric, note) = (metric.into(), String::new());
+        Self { tier, metric, value, reference, error, tolerance, gate: true, solver: "dem", note }
+    }
+
+    /// Judged by the distance over the reference.
+    pub(crate) fn relative(
+        tier: Tier,
+        metric: impl Into<String>,
+        value: f64,
+        reference: f64,
+        tolerance: f64,
+    ) -> Self {
+        let error = ((value - reference) / reference).abs();
+        Self::judged(tier, metric, [value, reference], error, tolerance)
+    }
+
+    /// Judged by the distance itself.
+    pub(crate) fn absolute(
+        tier: Tier,
+        metric: impl Into<String>,
+        value: f64,
+        reference: f64,
+        tolerance: f64,
+    ) -> Self {
+        let measure = Self::judged(tier, metric, [value, reference], (value - reference).abs(), tolerance);
+        measure.note("absolute error")
+    }
+
+    /// With one more note.
+    pub(crate) fn note(mut self, text: impl AsRef<str>) -> Self {
+        if !self.note.is_empty() {
+            self.note += "; ";
+        }
+        self.note += text.as_ref();
+        self
+    }
+
+    /// A claim: printed with its verdict, but it does not gate.
+    pub(crate) fn claim(self) -> Self {
+        Self { gate: false, ..self }
+    }
+
+    /// Measured on something other than the discrete element method.
+    pub(crate) fn of(self, solver: &'static str) -> Self {
+        Self { solver, ..self }
+    }
+}
+
+/// Collects the rows of a case, and the wall time of each.
+#[derive(Debug)]
+pub(crate) struct Rows {
+    case: &'static str,
+    rows: Vec<Row>,
+    lap: Instant,
+}
+
+impl Rows {
+    pub(crate) fn new(case: &'static str) -> Self {
+        Self { case, rows: Vec::new(), lap: Instant::now() }
+    }
+
+    pub(crate) fn add(&mut self, measure: Measure) {
+        let Measure { tier, metric, value, reference, error, tolerance, gate, solver, note } = measure;
+        let seconds = self.lap.elapsed().as_secs_f64();
+        self.lap = Instant::now();
+        // Not a number passes nothing.
+        let pass = error <= tolerance;
+        let case = self.case;
+        self.rows.push(Row {
+            case,
+            solver,
+            tier,
+            metric,
+            value,
+            reference,
+            error,
+            tolerance,
+            pass,
+            gate,
+            seconds,
+            note,
+        });
+    }
+
+    pub(crate) fn finish(self) -> Vec<Row> {
+        self.rows
+    }
+}

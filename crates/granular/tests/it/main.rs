@@ -1,0 +1,14 @@
+//! All integration tests of the driver, in one binary: linking is what takes time.
+
+// Helpers of tests may fail as tests do.
+#![allow(clippy::unwrap_used)]
+
+mod command;
+mod command_bad_input;
+mod command_disk;
+mod command_interrupt;
+mod command_snapshots;
+mod scenes;
+mod support;
+mod validation;
+mod workspace;

@@ -1,0 +1,103 @@
+//! The scenes of `examples/`, run shortened, and the reference of all that a scene may say.
+
+use crate::support::{Scratch, workspace};
+use granular::scene::Scene;
+use granular::scene_file::{SceneText, reference};
+use std::fs;
+use std::path::Path;
+
+/// Scenes with what makes them short. An example without a line here fails the test.
+const SHORTENED: &[(&str, &[&str])] = &[
+    ("ch3_disk_on_incline", &["stages.0.end=For(\"0.05 s\")"]),
+    (
+        "ch4_column_collapse",
+        &[
+            "sample.extent=Grains(200)",
+            "stages.0.end=For(\"0.02 s\")",
+            "stages.1.end=For(\"0.06 s\")",
+            "figures.2.times=[0, 1]",
+        ],
+    ),
+];
+
+#[test]
+fn every_example_runs_and_leaves_what_its_scene_asks_for() {
+    let scratch = Scratch::new("examples");
+    let folders = fs::read_dir(workspace().join("examples")).unwrap().map(|entry| entry.unwrap().path());
+    let mut seen = 0;
+    for folder in folders.filter(|path| path.is_dir()) {
+        let name = folder.file_name().unwrap().to_str().unwrap();
+        let short = SHORTENED.iter().find(|(known, _)| *known == name);
+        let (_, edits) = short.unwrap_or_else(|| panic!("examples/{name} has no line in SHORTENED"));
+        let scene = folder.join("scene.ron");
+        let edits: Vec<&str> = edits.iter().flat_map(|edit| ["--set", edit]).collect();
+        let arguments = [&["run", scene.to_str().unwrap(), "--out", name, "--quiet"], &edits[..]].concat();
+        scratch.granular(&arguments).expect(0);
+        assert_outputs(&scratch.path(name));
+        seen += 1;
+    }
+    assert_eq!(seen, SHORTENED.len(), "SHORTENED has a line without an example");
+}
+
+/// Tables parse, collections list files that are there, figures are images.
+fn assert_outputs(run: &Path) {
+    let scene: Scene = SceneText::read(run.join("scene.ron")).unwrap().parse().unwrap();
+    for output in &scene.outputs {
+        let path = run.join(output.write.path());
+        if path.extension().is_some_and(|ending| ending == "csv") {
+            let table = granular_io::read_table(&path).unwrap();
+            assert!(table.rows.len() > 5, "{} has {} rows", path.display(), table.rows.len());
+            let names: Vec<&str> = table.columns.iter().map(|(name, _)| name.as_str()).collect();
+            assert_eq!(names[0], "time");
+            assert_eq!(names[1..], output.write.names().iter().map(String::as_str).collect::<Vec<_>>());
+            assert!(table.columns.iter().all(|(_, unit)| !unit.is_empty()), "a column has no unit");
+            assert!(table.rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
+            assert!(table.rows.windows(2).all(|pair| pair[0][0] < pair[1][0]), "time goes on");
+        } else {
+            let list = granular_io::Collection::open(&path.with_extension("pvd")).unwrap();
+            assert!(!list.is_empty());
+            for (time, file) in list.entries() {
+                let frame = granular_io::vtk::read_vtp(&path.with_file_name(file)).unwrap();
+                assert_eq!(frame.time, *time);
+                for name in output.write.names() {
+                    assert!(frame.magnitude(name).is_some(), "{file} has no `{name}`");
+                }
+            }
+        }
+    }
+    for figure in &scene.figures {
+        let read = |ending: &str| fs::read(run.join(format!("{}.{ending}", figure.path()))).unwrap();
+        let (svg, png) = (read("svg"), read("png"));
+        assert!(svg.starts_with(b"<svg") || svg.starts_with(b"<?xml"), "{}", figure.path());
+        assert!(svg.len() > 2000 && png.len() > 2000, "{} is empty", figure.path());
+        assert!(png.starts_with(b"\x89PNG"), "{}", figure.path());
+    }
+}
+
+/// What stands before the generated part.
+const PREFACE: &str = "\
+All that a scene file may say; the file is [RON](https://github.com/ron-rs/ron). A value with a unit is a number in SI units or
+a text such as `\"1.15 mm\"`; a wrong unit is an error. `granular new` prints scenes to start from, `granular check` says what
+is wrong with one, and `--set path=value` changes a value on the command line.
+
+This page is generated from the comments in `crates/granular/src/scene.rs` and `crates/dem/src/spec.rs`: change those and run
+`GRANULAR_UPDATE=1 cargo test -p granular scene_reference`.";
+
+#[test]
+fn the_scene_reference_is_up_to_date() {
+    let schema = schemars::schema_for!(Scene);
+    let page = reference::markdown(&schema, "Scene reference");
+    let head = "# Scene reference\n";
+    let body = page.strip_prefix(head).expect("the title comes first");
+    let page = format!("{head}\n{PREFACE}\n{body}");
+    let path = workspace().join("docs/scene-reference.md");
+    if std::env::var_os("GRANULAR_UPDATE").is_some() {
+        fs::write(&path, &page).unwrap();
+    }
+    let found = fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        found == page,
+        "{} is out of date; run GRANULAR_UPDATE=1 cargo test -p granular scene_reference",
+        path.display()
+    );
+}

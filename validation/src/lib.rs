@@ -1,0 +1,21 @@
+//! Reference data of the validation cases, as the text of CSV files.
+//!
+//! Data live in a package of their own so that `cargo package` finds them. Each case has a folder
+//! with a `README.md` that states source, set-up, tier of evidence and weakness.
+//!
+//! ```
+//! let first = granular_validation_data::DISK_ON_INCLINE.lines().next().unwrap_or_default();
+//! assert!(first.starts_with("friction_angle_deg,"));
+//! ```
+
+/// Angle turned by a disk on an incline of 45 degrees, over the friction angle.
+pub const DISK_ON_INCLINE: &str = include_str!("../disk_on_incline/reference.csv");
+/// Angle turned by a sphere on an incline of 45 degrees, over the friction angle.
+pub const BALL_ON_INCLINE: &str = include_str!("../ball_on_incline/reference.csv");
+/// Damping ratio, restitution and contact time of a linear spring-dashpot, for both treatments of
+/// tension.
+pub const RESTITUTION: &str = include_str!("../restitution/reference.csv");
+/// The cumulative beta curve with both shape parameters 4.
+pub const GRADING: &str = include_str!("../grading/reference.csv");
+/// Run-out of columns of aspect ratio 0.8 in the literature.
+pub const COLUMN_RUNOUT: &str = include_str!("../column_runout/reference.csv");
