@@ -229,7 +229,6 @@ impl<D: Dim> Dem<D> {
             }
         }
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
-        list.retain(|s| self.turns() || s.name != "spin");
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
         list
     }
@@ -317,6 +316,8 @@ impl<D: Dim> Dem<D> {
                     sink.field(name, unit, FieldRef::Scalar(&speed));
                 }
                 "spin" if self.turns() => sink.field(name, unit, D::spin_field(&grains.spin)),
+                // Nothing turns the grains and nothing is stored: an output that asks gets zeros.
+                "spin" => sink.field(name, unit, D::spin_field(&vec![D::Spin::ZERO; self.len()])),
                 "id" => sink.field(name, unit, FieldRef::Index(&grains.id)),
                 "mass" => sink.field(name, unit, FieldRef::Scalar(&grains.mass)),
                 "contact_count" => sink.field(name, unit, FieldRef::Index(&self.coordination())),

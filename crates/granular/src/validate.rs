@@ -97,7 +97,8 @@ pub fn find(filter: Option<&str>) -> Result<Vec<Case>, Failure> {
         let names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
         let known = names.join(", ");
         let hint = nearest(wanted, names);
-        return Err(Failure::Io(format!("no validation case is called `{wanted}`; {hint} known: {known}")));
+        let hint = if hint.is_empty() { hint } else { format!("{hint} ") };
+        return Err(Failure::Io(format!("no validation case is called `{wanted}`; {hint}known: {known}")));
     }
     Ok(found)
 }
