@@ -20,8 +20,10 @@ use granular_core::{
 const SORT_EVERY: u64 = 5000;
 /// Below this number sorting does not pay.
 const SORT_FROM: usize = 512;
-/// Blocks that a sample is cut into, and their smallest size.
-const BLOCKS: usize = 16;
+/// Blocks that a sample is cut into, and their smallest size. Many small blocks share the work
+/// evenly (16 instead of 64 cost a fifth of the speed of two threads on a collapsing column of
+/// 13 000 disks) for 2 % on one thread.
+const BLOCKS: usize = 64;
 const SMALLEST_BLOCK: usize = 128;
 
 /// Discrete element method in dimension `D`.
