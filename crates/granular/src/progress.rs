@@ -18,20 +18,23 @@ pub(crate) struct StageLine {
     pub(crate) name: String,
     /// Time at which the stage ends at the latest \[s\].
     pub(crate) end: f64,
+    /// Step and time from which it goes on \[s\].
+    pub(crate) from: (u64, f64),
 }
 
 struct Progress {
     stage: StageLine,
     terminal: bool,
-    begun: Instant,
-    last: Option<(Instant, u64, f64)>,
+    last: (Instant, u64, f64),
+    shown: bool,
 }
 
 /// The progress of one stage.
 pub(crate) fn scheduled(stage: StageLine) -> Scheduled {
     let terminal = std::io::stderr().is_terminal();
     let interval = if terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
-    let progress = Progress { stage, terminal, begun: Instant::now(), last: None };
+    let last = (Instant::now(), stage.from.0, stage.from.1);
+    let progress = Progress { stage, terminal, last, shown: false };
     Scheduled::new("progress", Every::Wall(interval), Box::new(progress))
 }
 
@@ -40,7 +43,8 @@ impl Observer for Progress {
         let clock = simulation.clock();
         let (size, item) = simulation.solver().size();
         let now = (Instant::now(), clock.step(), clock.time());
-        let (since, step, time) = self.last.replace(now).unwrap_or((self.begun, clock.step(), clock.time()));
+        let (since, step, time) = std::mem::replace(&mut self.last, now);
+        self.shown = true;
         let wall = now.0.duration_since(since).as_secs_f64();
         let rate = (clock.step() - step) as f64 / wall.max(1e-9);
         let pace = (clock.time() - time) / wall.max(1e-9);
@@ -65,7 +69,7 @@ impl Observer for Progress {
     }
 
     fn finish(&mut self, _: &Simulation) -> Result<(), ObserverError> {
-        if self.terminal && self.last.is_some() {
+        if self.terminal && self.shown {
             let _ = write!(std::io::stderr(), "\r\x1b[K");
         }
         Ok(())

@@ -286,7 +286,9 @@ impl<'a> Session<'a> {
             let name =
                 format!("{} ({}/{})", self.scene.stages[index].name, index + 1, self.scene.stages.len());
             let end = self.records.last().map_or(0.0, |record| record.start) + longest;
-            extra.push(progress::scheduled(progress::StageLine { name, end }));
+            let clock = self.model.simulation.clock();
+            let from = (clock.step(), clock.time());
+            extra.push(progress::scheduled(progress::StageLine { name, end, from }));
         }
         Ok(extra)
     }
