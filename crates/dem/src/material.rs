@@ -1,7 +1,5 @@
 //! Materials, and what two of them make of a contact.
 
-use granular_core::solver::StepError;
-
 /// What a grain or wall is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -238,12 +236,6 @@ impl std::fmt::Display for SetupError {
 }
 
 impl std::error::Error for SetupError {}
-
-impl From<SetupError> for StepError {
-    fn from(error: SetupError) -> Self {
-        StepError::Step { dt: 0.0, why: error.to_string() }
-    }
-}
 
 fn check(material: &Material) -> Result<(), SetupError> {
     let positive = "positive and finite";

@@ -111,7 +111,11 @@ impl<D: Dim> Dem<D> {
     /// Farthest point of the main mass along an axis \[m\]: the front of a flow along x, its
     /// height along the upward axis.
     pub fn reach(&self, axis: usize) -> f64 {
-        let main = self.main_mass();
+        self.reach_of(&self.main_mass(), axis)
+    }
+
+    /// Farthest point of some grains along an axis \[m\].
+    fn reach_of(&self, main: &[bool], axis: usize) -> f64 {
         let grains = &self.grains;
         self.blocks.largest(|i| {
             if main[i] { grains.position[i].component(axis) + grains.radius[i] } else { f64::NEG_INFINITY }
@@ -246,8 +250,11 @@ impl<D: Dim> Dem<D> {
             NUMBERS[from..to].iter().any(|(name, ..)| sink.wants(name))
         };
         let mut values = vec![0.0; NUMBERS.len()];
-        if any(sink, 0, 2) {
-            (values[0], values[1]) = (self.reach(0), self.reach(D::UP));
+        // One search for the main mass serves front, height and what is not connected to it.
+        if any(sink, 0, 2) || any(sink, 18, 19) {
+            let main = self.main_mass();
+            (values[0], values[1]) = (self.reach_of(&main, 0), self.reach_of(&main, D::UP));
+            values[18] = main.iter().filter(|&&main| !main).count() as f64;
         }
         if any(sink, 2, 9) {
             let energies = self.energies();
@@ -277,9 +284,6 @@ impl<D: Dim> Dem<D> {
                 ends += if matches!(contact.partner, Partner::Grain(_)) { 2 } else { 1 };
             });
             (values[16], values[17]) = (f64::from(contacts), f64::from(ends) / self.len().max(1) as f64);
-        }
-        if any(sink, 18, 19) {
-            values[18] = self.main_mass().iter().filter(|&&main| !main).count() as f64;
         }
         for (&(name, unit, _), &value) in NUMBERS.iter().zip(&values) {
             if sink.wants(name) {
