@@ -75,6 +75,8 @@ proptest! {
 
     #[test]
     fn what_is_set_is_located(path in paths(), value in "[a-z0-9 .:/()\\[\\]\"\\\\é-]{1,12}") {
+        // `For([..])`: once the only argument is a list, an index means one of its items.
+        prop_assume!(path != "stages.1.1.0" || !value.trim().starts_with('['));
         let mut scene = sample();
         if scene.set(&format!("{path}={value}")).is_ok() {
             let text = written(&scene, path).unwrap();
