@@ -68,18 +68,23 @@ pub(super) fn energies(scene: &Scene, table: &Table, units: Units) -> Chart {
         Axis::linear("energy over the potential energy at the start [-]"),
     );
     // Losses count from the start of the stage; energies are absolute.
-    let curves: [(&str, &[&str], bool); 6] = [
+    let curves: [(&str, &[&str], bool); 7] = [
         ("potential", &["potential_energy"], false),
         ("kinetic", &["kinetic_energy", "rotational_energy"], false),
         ("lost by sliding between grains", &["loss_sliding"], true),
         ("lost by sliding at walls", &["loss_sliding_at_walls"], true),
         ("lost in dashpots", &["loss_normal_damping", "loss_tangential_damping"], true),
+        ("lost by rolling", &["loss_rolling"], true),
         ("missing in the balance", &["energy_residual"], true),
     ];
     for (label, names, from_start) in curves {
         let mut sum = vec![0.0; time.len()];
         for name in names {
             sum.iter_mut().zip(column(name)).for_each(|(sum, value)| *sum += value);
+        }
+        // Grains that roll freely lose nothing by rolling.
+        if sum.iter().all(|value| *value == 0.0) {
+            continue;
         }
         let offset = if from_start { sum.get(first).copied().unwrap_or(0.0) } else { 0.0 };
         let points = time.iter().zip(&sum).skip(first);

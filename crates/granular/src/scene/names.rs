@@ -108,5 +108,6 @@ pub(crate) const ENERGIES: &[&str] = &[
     "loss_sliding_at_walls",
     "loss_normal_damping",
     "loss_tangential_damping",
+    "loss_rolling",
     "energy_residual",
 ];

@@ -13,8 +13,10 @@ use std::time::Instant;
 
 /// Simulated time between looks at the energy residual \[s\].
 const LOOK: f64 = 1e-3;
-/// Time from the opening of the gate to the end, in units of sqrt(H/g); flow ends at about 3.5
-/// \[Kumar2014, section 4.2\].
+/// End of the flow after the opening of the gate, in units of sqrt(H/g): 2.5 sqrt(2) in
+/// \[StaronHinch2005\], 0.8 + 2 + 0.6 in \[Kumar2014, section 4.2\].
+const FLOW: f64 = 3.54;
+/// End of the run after the opening of the gate, in units of sqrt(H/g).
 const DURATION: f64 = 8.0;
 
 /// A column collapse to be run.
@@ -33,8 +35,14 @@ pub(crate) struct Fallen {
     pub(crate) width: f64,
     /// Height of the main mass when the gate opens \[m\].
     pub(crate) height: f64,
-    /// Front of the main mass at the end \[m\].
+    /// Front of the main mass when the flow ends, at 3.54 sqrt(H/g) \[m\].
+    pub(crate) flow_front: f64,
+    /// Front of the main mass at the end of the run, at 8 sqrt(H/g) \[m\].
     pub(crate) front: f64,
+    /// Kinetic energy at the end of the run, rotation included, over that at the end of the flow.
+    pub(crate) still_moving: f64,
+    /// Energy of rotation over that of translation at the end of the run; 1/2 for disks that roll.
+    pub(crate) rotation: f64,
     /// Largest energy residual over the potential energy at the start; zero without a ledger.
     pub(crate) largest_residual: f64,
     /// Steps taken.
@@ -51,9 +59,14 @@ impl Fallen {
         self.height / self.width
     }
 
-    /// `(L - L0) / L0`.
+    /// `(L - L0) / L0` at the end of the run.
     pub(crate) fn run_out(&self) -> f64 {
         (self.front - self.width) / self.width
+    }
+
+    /// `(L - L0) / L0` at the end of the flow.
+    pub(crate) fn run_out_of_flow(&self) -> f64 {
+        (self.flow_front - self.width) / self.width
     }
 }
 
@@ -107,19 +120,27 @@ impl Collapse {
         let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
         let scale = number(&model, "potential_energy");
         let column = model.column.expect("the template is a column");
+        let (last, settling) = steps.split_last().expect("the template has stages");
         let mut residual = 0.0_f64;
-        let mut height = f64::NAN;
-        for (index, &dt) in steps.iter().enumerate() {
-            // The grains that the gate lets go: the state at the start of the last stage.
-            height = number(&model, "height");
-            let longest = DURATION * (column.height / gravity(&scene)).sqrt();
-            let longest = (index + 1 == steps.len()).then_some(longest);
-            residual = residual.max(self.stage(&scene, &mut model, index, dt, longest)?);
+        for (index, &dt) in settling.iter().enumerate() {
+            residual = residual.max(self.stage(&scene, &mut model, index, dt)?);
         }
+        // The grains that the gate lets go: the state at the start of the last stage.
+        let height = number(&model, "height");
+        let unit = (column.height / gravity(&scene)).sqrt();
+        begin(&mut model, settling.len());
+        residual = residual.max(self.part(&mut model, *last, FLOW * unit, Vec::new())?);
+        let flow_front = number(&model, "front");
+        let moving = |model: &Model| number(model, "kinetic_energy") + number(model, "rotational_energy");
+        let flowing = moving(&model);
+        residual = residual.max(self.part(&mut model, *last, (DURATION - FLOW) * unit, Vec::new())?);
         Ok(Fallen {
             width: column.width,
             height,
+            flow_front,
             front: number(&model, "front"),
+            still_moving: moving(&model) / flowing,
+            rotation: number(&model, "rotational_energy") / number(&model, "kinetic_energy"),
             largest_residual: residual / scale,
             steps: model.simulation.clock().step(),
             dt: model.simulation.clock().dt(),
@@ -127,37 +148,43 @@ impl Collapse {
         })
     }
 
-    /// Runs a stage, for at most `longest` if given, and returns the largest energy residual.
-    fn stage(
-        &self,
-        scene: &Scene,
-        model: &mut Model,
-        index: usize,
-        dt: f64,
-        longest: Option<f64>,
-    ) -> Result<f64, Failure> {
-        for action in &model.stages[index] {
-            model::apply(action, model.simulation.solver_mut());
-        }
-        model.simulation.begin_segment(dt)?;
-        let mut observers = Vec::new();
-        let duration = match scene.stages[index].end {
-            End::For(time) => time.value(),
+    /// Runs a stage and returns the largest energy residual.
+    fn stage(&self, scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<f64, Failure> {
+        begin(model, index);
+        match scene.stages[index].end {
+            End::For(time) => self.part(model, dt, time.value(), Vec::new()),
             End::Quiet { kinetic_over_potential, within } => {
                 let rested = Arc::new(AtomicBool::new(false));
-                observers.push(Rest::scheduled(kinetic_over_potential, within.value(), rested));
-                within.value()
+                let rest = Rest::scheduled(kinetic_over_potential, within.value(), rested);
+                self.part(model, dt, within.value(), vec![rest])
             }
-        };
+        }
+    }
+
+    /// Runs for a time \[s\] and returns the largest energy residual.
+    fn part(
+        &self,
+        model: &mut Model,
+        dt: f64,
+        duration: f64,
+        mut observers: Vec<Scheduled>,
+    ) -> Result<f64, Failure> {
+        model.simulation.begin_segment(dt)?;
         let largest = Arc::new(Mutex::new(0.0));
         if self.ledger {
             let watch = Watch { largest: largest.clone() };
             observers.push(Scheduled::new("residual", Every::Time(LOOK), Box::new(watch)));
         }
-        let duration = longest.map_or(duration, |longest| duration.min(longest));
         model.simulation.run(duration, &mut observers, &AtomicBool::new(false))?;
         let largest = *largest.lock().expect("the observer does not panic");
         Ok(largest)
+    }
+}
+
+/// Makes the changes at the start of a stage.
+fn begin(model: &mut Model, index: usize) {
+    for action in &model.stages[index] {
+        model::apply(action, model.simulation.solver_mut());
     }
 }
 
