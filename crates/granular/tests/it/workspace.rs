@@ -13,11 +13,19 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("granular-core", &[]),
     ("granular-packing", &["granular-core"]),
     ("granular-dem", &["granular-core"]),
+    ("granular-lbm", &["granular-core"]),
     ("granular-io", &["granular-core"]),
     ("granular-validation-data", &[]),
     (
         "granular",
-        &["granular-core", "granular-packing", "granular-dem", "granular-io", "granular-validation-data"],
+        &[
+            "granular-core",
+            "granular-packing",
+            "granular-dem",
+            "granular-lbm",
+            "granular-io",
+            "granular-validation-data",
+        ],
     ),
 ];
 

@@ -1,0 +1,233 @@
+//! Velocity sets: D2Q9 in the plane and D3Q19 in space.
+//!
+//! Direction 0 is rest; directions 2k - 1 and 2k are opposite, so the first of each pair stands for
+//! both. Arrays by pair are indexed by the first direction of the pair; their other entries are
+//! not used.
+
+use crate::kernel::Rows;
+use crate::real::Real;
+use granular_core::{D2, D3, Dim};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::D2Q9 {}
+    impl Sealed for super::D3Q19 {}
+}
+
+/// A velocity set of `Q` directions. Sealed: only [`D2Q9`] and [`D3Q19`].
+pub trait Lattice<const Q: usize>: sealed::Sealed + Rows<Q> + Copy + Send + Sync + 'static {
+    /// The plane or space.
+    type Dim: Dim;
+    /// Usual name.
+    const NAME: &'static str;
+    /// Velocities, in cells per step.
+    const VELOCITIES: [[i32; 3]; Q];
+    /// Weights; sound travels at 1/sqrt(3) cells per step.
+    const WEIGHTS: [f64; Q];
+    /// Even moments that carry neither mass nor stress, by direction, orthogonal to each other and to
+    /// mass, momentum and the deviator of stress: energy, its square, and in space two more
+    /// \[Lallemand2000, DHumieres2002\]. Directions of a pair have the same value.
+    const GHOSTS: &'static [[f64; Q]];
+
+    /// Component of a vector along the first direction of each pair.
+    fn along<T: Real>(vector: [T; 3]) -> [T; Q];
+    /// Sum of velocity times a number per pair.
+    fn first_moment<T: Real>(odd: &[T; Q]) -> [T; 3];
+    /// Sum of velocity times velocity times a number per pair: xx, yy, zz, xy, xz, yz.
+    fn second_moment<T: Real>(even: &[T; Q]) -> [T; 6];
+    /// Ghost moments of a number per pair and at rest; those that do not exist are zero.
+    fn ghost_moments<T: Real>(even: &[T; Q]) -> [T; 4];
+    /// Sum of the ghosts times a number each, at rest and in the first direction of each pair.
+    fn ghost_parts<T: Real>(moments: [T; 4]) -> [T; Q];
+}
+
+/// The direction against direction `i`.
+pub const fn opposite(i: usize) -> usize {
+    if i == 0 { 0 } else { ((i - 1) ^ 1) + 1 }
+}
+
+/// Nine directions in the plane \[Qian1992\].
+#[derive(Clone, Copy, Debug)]
+pub struct D2Q9;
+
+/// Nineteen directions in space \[Qian1992\].
+#[derive(Clone, Copy, Debug)]
+pub struct D3Q19;
+
+impl Lattice<9> for D2Q9 {
+    type Dim = D2;
+    const NAME: &'static str = "D2Q9";
+    const VELOCITIES: [[i32; 3]; 9] = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [-1, 0, 0],
+        [0, 1, 0],
+        [0, -1, 0],
+        [1, 1, 0],
+        [-1, -1, 0],
+        [1, -1, 0],
+        [-1, 1, 0],
+    ];
+    const WEIGHTS: [f64; 9] = by_length(4.0 / 9.0, 1.0 / 9.0, 1.0 / 36.0, Self::VELOCITIES);
+    const GHOSTS: &'static [[f64; 9]] =
+        &[by_length(-4.0, -1.0, 2.0, Self::VELOCITIES), by_length(4.0, -2.0, 1.0, Self::VELOCITIES)];
+
+    #[inline(always)]
+    fn along<T: Real>([x, y, _]: [T; 3]) -> [T; 9] {
+        let o = T::of(0.0);
+        [o, x, o, y, o, x + y, o, x - y, o]
+    }
+
+    #[inline(always)]
+    fn first_moment<T: Real>(odd: &[T; 9]) -> [T; 3] {
+        [odd[1] + odd[5] + odd[7], odd[3] + odd[5] - odd[7], T::of(0.0)]
+    }
+
+    #[inline(always)]
+    fn second_moment<T: Real>(even: &[T; 9]) -> [T; 6] {
+        let diagonal = even[5] + even[7];
+        let o = T::of(0.0);
+        [even[1] + diagonal, even[3] + diagonal, o, even[5] - even[7], o, o]
+    }
+
+    #[inline(always)]
+    fn ghost_moments<T: Real>(even: &[T; 9]) -> [T; 4] {
+        let (axes, diagonals, rest) = (even[1] + even[3], even[5] + even[7], T::of(4.0) * even[0]);
+        let two = T::of(2.0);
+        [two * diagonals - axes - rest, diagonals - two * axes + rest, T::of(0.0), T::of(0.0)]
+    }
+
+    #[inline(always)]
+    fn ghost_parts<T: Real>([energy, square, ..]: [T; 4]) -> [T; 9] {
+        let two = T::of(2.0);
+        let (axis, diagonal) = (-energy - two * square, two * energy + square);
+        let rest = T::of(4.0) * (square - energy);
+        [rest, axis, axis, axis, axis, diagonal, diagonal, diagonal, diagonal]
+    }
+}
+
+impl Lattice<19> for D3Q19 {
+    type Dim = D3;
+    const NAME: &'static str = "D3Q19";
+    const VELOCITIES: [[i32; 3]; 19] = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [-1, 0, 0],
+        [0, 1, 0],
+        [0, -1, 0],
+        [0, 0, 1],
+        [0, 0, -1],
+        [1, 1, 0],
+        [-1, -1, 0],
+        [1, -1, 0],
+        [-1, 1, 0],
+        [1, 0, 1],
+        [-1, 0, -1],
+        [1, 0, -1],
+        [-1, 0, 1],
+        [0, 1, 1],
+        [0, -1, -1],
+        [0, 1, -1],
+        [0, -1, 1],
+    ];
+    const WEIGHTS: [f64; 19] = by_length(1.0 / 3.0, 1.0 / 18.0, 1.0 / 36.0, Self::VELOCITIES);
+    const GHOSTS: &'static [[f64; 19]] = &[
+        by_length(-30.0, -11.0, 8.0, Self::VELOCITIES),
+        by_length(12.0, -4.0, 1.0, Self::VELOCITIES),
+        // pi_xx and pi_ww of d'Humieres et al.
+        [0.0, -4.0, -4.0, 2.0, 2.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -2.0, -2.0, -2.0, -2.0],
+        [0.0, 0.0, 0.0, -2.0, -2.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 0.0, 0.0, 0.0, 0.0],
+    ];
+
+    #[inline(always)]
+    fn along<T: Real>([x, y, z]: [T; 3]) -> [T; 19] {
+        let o = T::of(0.0);
+        [o, x, o, y, o, z, o, x + y, o, x - y, o, x + z, o, x - z, o, y + z, o, y - z, o]
+    }
+
+    #[inline(always)]
+    fn first_moment<T: Real>(d: &[T; 19]) -> [T; 3] {
+        [
+            d[1] + (d[7] + d[9]) + (d[11] + d[13]),
+            d[3] + (d[7] - d[9]) + (d[15] + d[17]),
+            d[5] + (d[11] - d[13]) + (d[15] - d[17]),
+        ]
+    }
+
+    #[inline(always)]
+    fn second_moment<T: Real>(e: &[T; 19]) -> [T; 6] {
+        let (xy, xz, yz) = (e[7] + e[9], e[11] + e[13], e[15] + e[17]);
+        [e[1] + xy + xz, e[3] + xy + yz, e[5] + xz + yz, e[7] - e[9], e[11] - e[13], e[15] - e[17]]
+    }
+
+    #[inline(always)]
+    fn ghost_moments<T: Real>(e: &[T; 19]) -> [T; 4] {
+        let (xy, xz, yz) = (e[7] + e[9], e[11] + e[13], e[15] + e[17]);
+        let (across, axes, diagonals) = (e[3] + e[5], e[1] + e[3] + e[5], xy + xz + yz);
+        let (two, four) = (T::of(2.0), T::of(4.0));
+        [
+            T::of(8.0) * diagonals - T::of(11.0) * axes - T::of(30.0) * e[0],
+            diagonals - four * axes + T::of(12.0) * e[0],
+            two * (across - yz) - four * e[1] + (xy + xz),
+            two * (e[5] - e[3]) + (xy - xz),
+        ]
+    }
+
+    #[inline(always)]
+    fn ghost_parts<T: Real>([energy, square, along, across]: [T; 4]) -> [T; 19] {
+        let (two, four) = (T::of(2.0), T::of(4.0));
+        let rest = T::of(12.0) * square - T::of(30.0) * energy;
+        let axis = -(T::of(11.0) * energy + four * square);
+        let diagonal = T::of(8.0) * energy + square;
+        let (x, y, z) = (axis - four * along, axis + two * (along - across), axis + two * (along + across));
+        let (xy, xz, yz) = (diagonal + (along + across), diagonal + (along - across), diagonal - two * along);
+        [rest, x, x, y, y, z, z, xy, xy, xy, xy, xz, xz, xz, xz, yz, yz, yz, yz]
+    }
+}
+
+/// A number per direction that depends on its length alone.
+const fn by_length<const Q: usize>(
+    rest: f64,
+    axis: f64,
+    diagonal: f64,
+    velocities: [[i32; 3]; Q],
+) -> [f64; Q] {
+    let mut values = [0.0; Q];
+    let mut i = 0;
+    while i < Q {
+        let [x, y, z] = velocities[i];
+        values[i] = match x * x + y * y + z * z {
+            0 => rest,
+            1 => axis,
+            _ => diagonal,
+        };
+        i += 1;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn agree<L: Lattice<Q>, const Q: usize>() {
+        let values: [f64; Q] = std::array::from_fn(|i| ((7 * i + 3) % 11) as f64);
+        let moments = L::ghost_moments(&values);
+        for k in 0..4 {
+            let ghost = L::GHOSTS.get(k).copied().unwrap_or([0.0; Q]);
+            // Each pair counts once.
+            let pairs: f64 = (1..Q).step_by(2).map(|i| ghost[i] * values[i]).sum();
+            assert_eq!(moments[k], ghost[0] * values[0] + pairs, "{} {k}", L::NAME);
+            let unit = std::array::from_fn(|other| f64::from(u8::from(other == k)));
+            if k < L::GHOSTS.len() {
+                assert_eq!(L::ghost_parts::<f64>(unit), ghost, "{} {k}", L::NAME);
+            }
+        }
+    }
+
+    #[test]
+    fn ghosts_are_computed_as_they_are_defined() {
+        agree::<D2Q9, 9>();
+        agree::<D3Q19, 19>();
+    }
+}

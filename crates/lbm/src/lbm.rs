@@ -1,0 +1,259 @@
+//! The solver.
+
+use crate::boundary::{Beyond, Builder, Cover, cell_index, centre_of, cover};
+use crate::collision::{Parameters, Parts, Physics, With};
+use crate::lattice::Lattice;
+use crate::open::{dot, equilibrium, moments};
+use crate::populations::{Grid, Populations, Runs};
+use crate::real::Real;
+use crate::setup::{Setup, SetupError};
+use granular_core::solver::check_step;
+use granular_core::{Dim, StepError, Vector};
+
+/// Largest population at rest, without its weight, that still means something: its density would
+/// be twice that at rest.
+const BEYOND: f64 = 4.0 / 9.0;
+
+type StepFunction<T> = fn(&mut Populations<T>, &Runs, &Parameters<T>, T) -> bool;
+
+/// A fluid on a lattice. `T` is the type in which populations are stored and computed.
+pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
+    pub(crate) setup: Setup<L::Dim>,
+    pub(crate) populations: Populations<T>,
+    pub(crate) runs: Runs,
+    pub(crate) cover: Cover,
+    pub(crate) beyond: Beyond<T>,
+    pub(crate) physics: Physics,
+    parameters: Parameters<T>,
+    step: StepFunction<T>,
+    pub(crate) steps: u64,
+    pub(crate) fluid_cells: usize,
+}
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> std::fmt::Debug for Lbm<L, Q, T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lbm")
+            .field("lattice", &L::NAME)
+            .field("setup", &self.setup)
+            .field("steps", &self.steps)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Pressure over that at rest and velocity at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow<D: Dim> {
+    /// Pressure \[Pa\].
+    pub pressure: f64,
+    /// Velocity \[m/s\].
+    pub velocity: D::Vec,
+}
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
+    /// A fluid at rest.
+    ///
+    /// # Errors
+    /// When a value makes no sense; it is named with what is allowed.
+    pub fn new(setup: Setup<L::Dim>) -> Result<Self, SetupError> {
+        setup.check()?;
+        let grid = Grid::new::<T>(setup.cells, L::Dim::N == 3);
+        if u32::try_from(grid.len::<Q>()).is_err() {
+            let value = format!("{:?}", setup.cells);
+            return Err(SetupError::new("cells", value, "fewer than 2^32 populations"));
+        }
+        let cover = cover(&setup)?;
+        let is_fluid = |cell| cover.is_empty() || cover[cell_index(setup.cells, cell)] == 0;
+        let runs = Runs::of(&grid, is_fluid);
+        let beyond = Builder::<L, Q>::new(&setup, &grid, &cover).build();
+        let solid = cover.iter().filter(|number| **number != 0).count();
+        let physics = Physics {
+            operator: setup.operator,
+            tau: setup.tau(),
+            force: setup.acceleration.padded().map(|a| a * setup.time_step.powi(2) / setup.spacing),
+            smagorinsky: setup.smagorinsky.unwrap_or(0.0),
+        };
+        let mut lbm = Self {
+            populations: Populations::new::<Q>(grid, &runs),
+            fluid_cells: setup.cells.iter().product::<usize>() - solid,
+            runs,
+            cover,
+            beyond,
+            parameters: physics.parameters::<L, T, Q>(),
+            step: step_function::<L, T, Q>(&physics),
+            physics,
+            steps: 0,
+            setup,
+        };
+        lbm.set_flow(|_| Flow { pressure: 0.0, velocity: Vector::along(0, 0.0) });
+        Ok(lbm)
+    }
+
+    /// The setup.
+    pub fn setup(&self) -> &Setup<L::Dim> {
+        &self.setup
+    }
+
+    /// Places of all fluid cells in a plane and their coordinates, x fastest.
+    pub(crate) fn fluid(&self) -> impl Iterator<Item = ([usize; 3], usize)> + '_ {
+        crate::boundary::cells_of([0; 3], self.setup.cells)
+            .filter(|cell| self.is_fluid(*cell))
+            .map(|cell| (cell, self.populations.grid.place(cell.map(|x| x as i64))))
+    }
+
+    pub(crate) fn is_fluid(&self, cell: [usize; 3]) -> bool {
+        self.cover.is_empty() || self.cover[cell_index(self.setup.cells, cell)] == 0
+    }
+
+    /// Sets pressure and velocity everywhere, with the stress that belongs to the gradient of the
+    /// velocity.
+    pub fn set_flow(&mut self, flow: impl Fn(<L::Dim as Dim>::Vec) -> Flow<L::Dim>) {
+        let speed = self.setup.lattice_speed();
+        let lattice_velocity = |at| flow(at).velocity.padded().map(|c| c / speed);
+        let cells: Vec<_> = self.fluid().collect();
+        for (cell, place) in cells {
+            let centre = centre_of(&self.setup, cell.map(|x| x as i64));
+            let excess = self.setup.density_excess(flow(centre).pressure);
+            let mut gradient = [[0.0; 3]; 3];
+            for (axis, row) in gradient.iter_mut().enumerate().take(L::Dim::N) {
+                let half = <L::Dim as Dim>::Vec::along(axis, 0.5 * self.setup.spacing);
+                let (low, high) = (lattice_velocity(centre - half), lattice_velocity(centre + half));
+                *row = std::array::from_fn(|component| high[component] - low[component]);
+            }
+            let f = started::<L, Q>(excess, lattice_velocity(centre), gradient, &self.physics);
+            self.populations.set_entering::<L, Q>(place, f.map(T::of));
+        }
+        self.apply_boundaries();
+    }
+
+    fn apply_boundaries(&mut self) {
+        self.beyond.copies.apply(&mut self.populations);
+        for obstacle in &mut self.beyond.obstacles {
+            obstacle.apply::<L, Q>(&mut self.populations);
+        }
+        for face in &self.beyond.open {
+            face.apply::<L, T, Q>(&mut self.populations, self.physics.force);
+        }
+    }
+
+    /// Advances; the step must be that of the setup.
+    pub(crate) fn advance_by(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        check_step(dt)?;
+        if dt != self.setup.time_step {
+            let why = format!("the lattice has a step of {:e} s", self.setup.time_step);
+            return Err(StepError::Step { dt, why });
+        }
+        for _ in 0..steps {
+            let is_beyond = (self.step)(&mut self.populations, &self.runs, &self.parameters, T::of(BEYOND));
+            self.apply_boundaries();
+            self.steps += 1;
+            if is_beyond {
+                return Err(self.culprit());
+            }
+        }
+        Ok(())
+    }
+
+    /// Names the first cell whose state makes no sense.
+    fn culprit(&self) -> StepError {
+        let found = self.fluid().find(|(_, place)| {
+            let (excess, _) = self.moments(*place);
+            excess.is_nan() || excess.abs() >= 0.5
+        });
+        let cell = found.map_or([0; 3], |(cell, _)| cell);
+        let (excess, momentum) = self.moments(self.populations.grid.place(cell.map(|x| x as i64)));
+        if excess.is_finite() && momentum.iter().all(|c| c.is_finite()) {
+            return StepError::TooStiff {
+                what: format!("density over that at rest in cell {cell:?} after step {}", self.steps),
+                value: 1.0 + excess,
+                allowed: 1.5,
+                hint: "the flow is too fast or too little viscous for its cells: take a smaller step (Mach number) \
+                       or smaller cells (grid Reynolds number)"
+                    .to_owned(),
+            };
+        }
+        let id = cell_index(self.setup.cells, cell) as u64;
+        StepError::NotFinite { solver: "lattice Boltzmann", quantity: "density", id, step: self.steps }
+    }
+
+    /// Density excess and momentum in lattice units, half of the force included.
+    pub(crate) fn moments(&self, place: usize) -> (f64, [f64; 3]) {
+        let f = self.populations.entering::<L, Q>(place).map(T::double);
+        moments::<L, Q>(&f, self.physics.force)
+    }
+
+    /// Pressure \[Pa\] over that at rest and velocity \[m/s\] in a cell; none inside an obstacle.
+    ///
+    /// # Panics
+    /// When the cell lies outside the domain.
+    pub fn flow(&self, cell: [usize; 3]) -> Option<Flow<L::Dim>> {
+        assert!((0..3).all(|axis| cell[axis] < self.setup.cells[axis]), "cell {cell:?} lies outside");
+        if !self.is_fluid(cell) {
+            return None;
+        }
+        let (excess, momentum) = self.moments(self.populations.grid.place(cell.map(|x| x as i64)));
+        let speed = self.setup.lattice_speed();
+        let velocity = momentum.map(|j| j / (1.0 + excess) * speed);
+        let velocity = Vector::from_slice(&velocity[..L::Dim::N]).expect("one component per axis");
+        Some(Flow { pressure: excess / 3.0 * self.setup.density * speed * speed, velocity })
+    }
+
+    /// Centre of a cell \[m\].
+    pub fn centre(&self, cell: [usize; 3]) -> <L::Dim as Dim>::Vec {
+        centre_of(&self.setup, cell.map(|x| x as i64))
+    }
+
+    /// Force \[N, per metre of depth in the plane\] of the fluid on an obstacle in the last step, by the number of the obstacle.
+    pub fn force_on(&self, obstacle: usize) -> <L::Dim as Dim>::Vec {
+        let scale = self.force_scale();
+        let force = self.beyond.obstacles[obstacle].force.map(|c| c * scale);
+        Vector::from_slice(&force[..L::Dim::N]).expect("one component per axis")
+    }
+
+    /// Torque \[N m, per metre of depth in the plane\] about the centre of an obstacle, as [`Lbm::force_on`].
+    pub fn torque_on(&self, obstacle: usize) -> <L::Dim as Dim>::Spin {
+        let scale = self.force_scale() * self.setup.spacing;
+        granular_core::Spin::of_components(self.beyond.obstacles[obstacle].torque.map(|c| c * scale))
+    }
+
+    /// One lattice unit of force: density h^N h / dt^2.
+    pub(crate) fn force_scale(&self) -> f64 {
+        let Setup { spacing, time_step, density, .. } = self.setup;
+        density * spacing.powi(L::Dim::N as i32 + 1) / (time_step * time_step)
+    }
+}
+
+/// Populations of a given density, velocity and velocity gradient (`gradient[a][b]` is the derivative of `u_b` along
+/// `a`), to first order in the gradient.
+fn started<L: Lattice<Q>, const Q: usize>(
+    excess: f64,
+    velocity: [f64; 3],
+    gradient: [[f64; 3]; 3],
+    physics: &Physics,
+) -> [f64; Q] {
+    let trace: f64 = (0..3).map(|axis| gradient[axis][axis]).sum();
+    let mut f = equilibrium::<L, Q>(excess, velocity);
+    for (i, f) in f.iter_mut().enumerate() {
+        let c = L::VELOCITIES[i].map(f64::from);
+        let strained: f64 = (0..3).map(|a| (0..3).map(|b| c[a] * c[b] * gradient[a][b]).sum::<f64>()).sum();
+        let stress = -3.0 * physics.tau * (1.0 + excess) * (strained - trace / 3.0);
+        *f += L::WEIGHTS[i] * (stress - 1.5 * dot(L::VELOCITIES[i], physics.force));
+    }
+    f
+}
+
+/// The step compiled for the parts that are on.
+fn step_function<L: Lattice<Q>, T: Real, const Q: usize>(physics: &Physics) -> StepFunction<T> {
+    fn of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>() -> StepFunction<T> {
+        Populations::step::<L, P, Q>
+    }
+    match (physics.has_ghosts(), physics.has_force(), physics.has_closure()) {
+        (false, false, false) => of::<L, T, With<false, false, false>, Q>(),
+        (false, false, true) => of::<L, T, With<false, false, true>, Q>(),
+        (false, true, false) => of::<L, T, With<false, true, false>, Q>(),
+        (false, true, true) => of::<L, T, With<false, true, true>, Q>(),
+        (true, false, false) => of::<L, T, With<true, false, false>, Q>(),
+        (true, false, true) => of::<L, T, With<true, false, true>, Q>(),
+        (true, true, false) => of::<L, T, With<true, true, false>, Q>(),
+        (true, true, true) => of::<L, T, With<true, true, true>, Q>(),
+    }
+}

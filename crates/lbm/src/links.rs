@@ -1,0 +1,207 @@
+//! What enters cells from beyond the fluid: lists of links, applied after each step.
+//!
+//! A link replaces the population that enters a cell along one direction by populations that left cells in
+//! the same step. No link writes what another reads, so their order does not matter.
+
+use crate::lattice::{Lattice, opposite};
+use crate::populations::{Grid, Layout, Populations};
+use crate::real::Real;
+
+/// A population: the place of a cell and a direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Port {
+    pub(crate) place: usize,
+    pub(crate) direction: usize,
+}
+
+/// Index of a population in both layouts.
+type Both = [u32; 2];
+
+fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+    [Layout::Natural, Layout::Turned]
+        .map(|layout| grid.entering::<L, Q>(layout, port.place, port.direction) as u32)
+}
+
+fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+    [Layout::Natural, Layout::Turned]
+        .map(|layout| grid.leaving::<L, Q>(layout, port.place, port.direction) as u32)
+}
+
+/// Links that copy: walls half-way between cells, free slip, periodic faces.
+#[derive(Clone, Debug)]
+pub(crate) struct Copies<T> {
+    resting: Vec<(Both, Both)>,
+    /// With what a moving wall adds.
+    moving: Vec<(Both, Both, T)>,
+}
+
+impl<T: Real> Copies<T> {
+    pub(crate) fn new() -> Self {
+        Self { resting: Vec::new(), moving: Vec::new() }
+    }
+
+    /// What enters at `to` is what left at `from`, plus `added`.
+    pub(crate) fn push<L: Lattice<Q>, const Q: usize>(
+        &mut self,
+        grid: &Grid,
+        to: Port,
+        from: Port,
+        added: f64,
+    ) {
+        let (to, from) = (entering::<L, Q>(grid, to), leaving::<L, Q>(grid, from));
+        if added == 0.0 {
+            self.resting.push((to, from));
+        } else {
+            self.moving.push((to, from, T::of(added)));
+        }
+    }
+
+    pub(crate) fn apply(&self, populations: &mut Populations<T>) {
+        let at = populations.layout as usize;
+        let values = &mut populations.values[..];
+        for (to, from) in &self.resting {
+            values[to[at] as usize] = values[from[at] as usize];
+        }
+        for (to, from, added) in &self.moving {
+            values[to[at] as usize] = values[from[at] as usize] + *added;
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<(Both, Both)>() * self.resting.capacity()
+            + size_of::<(Both, Both, T)>() * self.moving.capacity()
+    }
+}
+
+/// How a curved wall is met by a link that it cuts at the fraction `q` of its length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum WallScheme {
+    /// Half-way, wherever the wall is; keeps mass exactly.
+    HalfWay,
+    /// Linear interpolation by cases \[Bouzidi2001\].
+    #[default]
+    Bouzidi,
+    /// One linear formula for all `q` \[Yu2003; Kumar2014, eq. 5.51\].
+    Yu,
+}
+
+impl WallScheme {
+    /// Weights of what left the cell towards the wall, what left the cell behind towards the wall, and what left the
+    /// cell away from the wall.
+    pub(crate) fn weights(self, q: f64, has_cell_behind: bool) -> [f64; 3] {
+        match self {
+            _ if !has_cell_behind => [1.0, 0.0, 0.0],
+            Self::HalfWay => [1.0, 0.0, 0.0],
+            Self::Bouzidi if q < 0.5 => [2.0 * q, 1.0 - 2.0 * q, 0.0],
+            Self::Bouzidi => [0.5 / q, 0.0, 1.0 - 0.5 / q],
+            Self::Yu => [q / (1.0 + q), (1.0 - q) / (1.0 + q), q / (1.0 + q)],
+        }
+    }
+
+    /// Factor of `-2 w_i rho c_i . u_w / c_s^2` for a moving wall.
+    pub(crate) fn motion(self, q: f64, has_cell_behind: bool) -> f64 {
+        match self {
+            _ if !has_cell_behind => 1.0,
+            Self::HalfWay => 1.0,
+            Self::Bouzidi if q < 0.5 => 1.0,
+            Self::Bouzidi => 0.5 / q,
+            Self::Yu => 1.0 / (1.0 + q),
+        }
+    }
+}
+
+/// A link cut by an obstacle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cut {
+    /// Cell in the fluid and direction towards the wall.
+    pub(crate) port: Port,
+    /// Weights after [`WallScheme::weights`].
+    pub(crate) weights: [f64; 3],
+    /// What the motion of the wall adds.
+    pub(crate) added: f64,
+    /// From the centre of the obstacle to the wall \[cells\].
+    pub(crate) arm: [f64; 3],
+    /// Velocity of the wall \[cells per step\].
+    pub(crate) velocity: [f64; 3],
+}
+
+/// All links of one obstacle.
+#[derive(Clone, Debug)]
+pub(crate) struct Cuts<T> {
+    links: Vec<CutLink<T>>,
+    /// Force and torque of the fluid on the obstacle in the last step, in lattice units.
+    pub(crate) force: [f64; 3],
+    pub(crate) torque: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+struct CutLink<T> {
+    to: Both,
+    from: [Both; 3],
+    weights: [T; 3],
+    added: T,
+    direction: u8,
+    arm: [f64; 3],
+    velocity: [f64; 3],
+}
+
+impl<T: Real> Cuts<T> {
+    pub(crate) fn new<L: Lattice<Q>, const Q: usize>(grid: &Grid, cuts: &[Cut]) -> Self {
+        let link = |cut: &Cut| {
+            let Port { place, direction } = cut.port;
+            let back = opposite(direction);
+            let behind = (0..3).fold(0_i64, |sum, axis| {
+                sum - i64::from(L::VELOCITIES[direction][axis]) * grid.stride(axis) as i64
+            });
+            let behind = place.wrapping_add_signed(behind as isize);
+            let away = leaving::<L, Q>(grid, Port { place, direction: back });
+            let near = leaving::<L, Q>(grid, cut.port);
+            // Without a cell behind, the weight is zero and any place does.
+            let behind = if cut.weights[1] == 0.0 {
+                near
+            } else {
+                leaving::<L, Q>(grid, Port { place: behind, direction })
+            };
+            CutLink {
+                to: entering::<L, Q>(grid, Port { place, direction: back }),
+                from: [near, behind, away],
+                weights: cut.weights.map(T::of),
+                added: T::of(cut.added),
+                direction: direction as u8,
+                arm: cut.arm,
+                velocity: cut.velocity,
+            }
+        };
+        Self { links: cuts.iter().map(link).collect(), force: [0.0; 3], torque: [0.0; 3] }
+    }
+
+    /// Applies all links, and adds up force and torque in their order. Momentum is exchanged in the
+    /// frame of the wall, so that an obstacle carried by a stream feels no force \[Wen2014\].
+    pub(crate) fn apply<L: Lattice<Q>, const Q: usize>(&mut self, populations: &mut Populations<T>) {
+        let at = populations.layout as usize;
+        let values = &mut populations.values[..];
+        let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
+        for link in &self.links {
+            let [near, behind, away] = link.from.map(|from| values[from[at] as usize]);
+            let [a, b, c] = link.weights;
+            let entering = a * near + b * behind + c * away + link.added;
+            values[link.to[at] as usize] = entering;
+            let (out, back) = (near.double(), entering.double());
+            let velocity = L::VELOCITIES[link.direction as usize].map(f64::from);
+            let push: [f64; 3] = std::array::from_fn(|axis| {
+                out * (velocity[axis] - link.velocity[axis]) + back * (velocity[axis] + link.velocity[axis])
+            });
+            let [x, y, z] = link.arm;
+            let turn = [y * push[2] - z * push[1], z * push[0] - x * push[2], x * push[1] - y * push[0]];
+            for axis in 0..3 {
+                force[axis] += push[axis];
+                torque[axis] += turn[axis];
+            }
+        }
+        (self.force, self.torque) = (force, torque);
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<CutLink<T>>() * self.links.capacity()
+    }
+}

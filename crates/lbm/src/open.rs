@@ -1,0 +1,153 @@
+//! Faces through which fluid enters and leaves, with velocity or pressure given at the centres of the
+//! cells next to the face.
+//!
+//! What enters from outside follows by bouncing the departure from equilibrium back, with the
+//! transverse momentum put right \[ZouHe1997; HechtHarting2010\]. The regularised form then rebuilds all populations of the cell
+//! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers.
+
+use crate::lattice::{Lattice, opposite};
+use crate::populations::Populations;
+use crate::real::Real;
+
+/// How unknown populations at an open face are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum OpenScheme {
+    /// Non-equilibrium bounce-back \[ZouHe1997\]; exact for a parabolic profile at `Lambda = 3/16`.
+    #[default]
+    ZouHe,
+    /// The same, then all populations rebuilt from density, velocity and stress \[Latt2008\].
+    Regularised,
+}
+
+/// What is known at an open face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Known {
+    Velocity,
+    /// Density, and the velocity along the face.
+    Density,
+}
+
+/// Cells of one open face.
+#[derive(Clone, Debug)]
+pub(crate) struct OpenFace {
+    pub(crate) axis: usize,
+    /// +1 when the inside lies towards higher coordinates.
+    pub(crate) inward: i32,
+    pub(crate) known: Known,
+    pub(crate) scheme: OpenScheme,
+    /// Place, velocity and density excess, in lattice units.
+    pub(crate) cells: Vec<(usize, [f64; 3], f64)>,
+}
+
+/// Populations in equilibrium, without their weights.
+pub(crate) fn equilibrium<L: Lattice<Q>, const Q: usize>(excess: f64, u: [f64; 3]) -> [f64; Q] {
+    let squared: f64 = u.iter().map(|component| component * component).sum();
+    std::array::from_fn(|i| {
+        let along = dot(L::VELOCITIES[i], u);
+        let flow = 3.0 * along + 4.5 * along * along - 1.5 * squared;
+        L::WEIGHTS[i] * (excess + (1.0 + excess) * flow)
+    })
+}
+
+pub(crate) fn dot(velocity: [i32; 3], vector: [f64; 3]) -> f64 {
+    (0..3).map(|axis| f64::from(velocity[axis]) * vector[axis]).sum()
+}
+
+/// Density excess and momentum, half of the force included.
+pub(crate) fn moments<L: Lattice<Q>, const Q: usize>(f: &[f64; Q], force: [f64; 3]) -> (f64, [f64; 3]) {
+    let mut momentum = force.map(|component| 0.5 * component);
+    for (f, velocity) in f.iter().zip(L::VELOCITIES) {
+        for axis in 0..3 {
+            momentum[axis] += f64::from(velocity[axis]) * f;
+        }
+    }
+    (f.iter().sum(), momentum)
+}
+
+impl OpenFace {
+    pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        populations: &mut Populations<T>,
+        force: [f64; 3],
+    ) {
+        for &(place, velocity, excess) in &self.cells {
+            let mut f = populations.entering::<L, Q>(place).map(T::double);
+            let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
+            if self.scheme == OpenScheme::Regularised {
+                regularise::<L, Q>(&mut f, excess, velocity, force);
+            }
+            populations.set_entering::<L, Q>(place, f.map(T::of));
+        }
+    }
+
+    /// Finds the unknown populations; returns density excess and velocity.
+    fn fill<L: Lattice<Q>, const Q: usize>(
+        &self,
+        f: &mut [f64; Q],
+        mut u: [f64; 3],
+        mut excess: f64,
+        force: [f64; 3],
+    ) -> (f64, [f64; 3]) {
+        let inwards = |i: usize| self.inward * L::VELOCITIES[i][self.axis];
+        let mut known = 1.0 - 0.5 * f64::from(self.inward) * force[self.axis];
+        for i in 0..Q {
+            known += match inwards(i) {
+                0 => f[i],
+                1 => 0.0,
+                _ => 2.0 * f[i],
+            };
+        }
+        match self.known {
+            Known::Velocity => excess = known / (1.0 - f64::from(self.inward) * u[self.axis]) - 1.0,
+            Known::Density => u[self.axis] = f64::from(self.inward) * (1.0 - known / (1.0 + excess)),
+        }
+        let density = 1.0 + excess;
+        for i in 0..Q {
+            if inwards(i) == 1 {
+                f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * dot(L::VELOCITIES[i], u);
+            }
+        }
+        let (_, momentum) = moments::<L, Q>(f, force);
+        for i in 0..Q {
+            if inwards(i) != 1 {
+                continue;
+            }
+            let velocity = L::VELOCITIES[i];
+            let straight = velocity.iter().map(|c| c * c).sum::<i32>() == 1;
+            for axis in 0..3 {
+                let missing = density * u[axis] - momentum[axis];
+                if axis != self.axis {
+                    f[i] += 0.5 * f64::from(velocity[axis]) * missing;
+                } else if straight {
+                    f[i] += f64::from(velocity[axis]) * missing;
+                }
+            }
+        }
+        (excess, u)
+    }
+}
+
+/// Keeps density, velocity and stress, and nothing else.
+fn regularise<L: Lattice<Q>, const Q: usize>(f: &mut [f64; Q], excess: f64, u: [f64; 3], force: [f64; 3]) {
+    let at_rest = equilibrium::<L, Q>(excess, u);
+    let mut stress = [[0.0; 3]; 3];
+    for i in 0..Q {
+        let velocity = L::VELOCITIES[i].map(f64::from);
+        for (a, row) in stress.iter_mut().enumerate() {
+            for (b, value) in row.iter_mut().enumerate() {
+                *value += velocity[a] * velocity[b] * (f[i] - at_rest[i]);
+            }
+        }
+    }
+    let trace = (0..3).map(|axis| stress[axis][axis]).sum::<f64>();
+    for i in 0..Q {
+        let velocity = L::VELOCITIES[i].map(f64::from);
+        let mut projected = -trace / 3.0;
+        for (a, row) in stress.iter().enumerate() {
+            for (b, value) in row.iter().enumerate() {
+                projected += velocity[a] * velocity[b] * value;
+            }
+        }
+        f[i] = at_rest[i] + L::WEIGHTS[i] * (4.5 * projected - 1.5 * dot(L::VELOCITIES[i], force));
+    }
+}

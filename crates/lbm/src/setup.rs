@@ -1,0 +1,272 @@
+//! What a flow is made of, in physical units.
+
+use crate::collision::Operator;
+use crate::links::WallScheme;
+use crate::open::OpenScheme;
+use crate::shape::Shape;
+use granular_core::{Dim, Linear, Vector};
+use std::fmt;
+use std::sync::Arc;
+
+/// A flow to be solved. Fields are public; start from [`Setup::new`].
+#[derive(Clone)]
+pub struct Setup<D: Dim> {
+    /// Cells along each axis; 1 along z in the plane.
+    pub cells: [usize; 3],
+    /// Edge of a cell \[m\].
+    pub spacing: f64,
+    /// Lowest corner of the domain \[m\].
+    pub origin: D::Vec,
+    /// Step \[s\].
+    pub time_step: f64,
+    /// Kinematic viscosity \[m^2/s\].
+    pub viscosity: f64,
+    /// Density \[kg/m^3\].
+    pub density: f64,
+    /// Body force per mass \[m/s^2\]; its force density is that of the density given, not of the local one.
+    pub acceleration: D::Vec,
+    /// Collision operator.
+    pub operator: Operator,
+    /// Smagorinsky constant C of the eddy viscosity `(C h)^2 sqrt(2 S:S)`; none by default.
+    pub smagorinsky: Option<f64>,
+    /// What bounds the domain: low and high face of each axis.
+    pub faces: [[Face<D>; 2]; 3],
+    /// Bodies in the fluid.
+    pub obstacles: Vec<Obstacle<D>>,
+    /// Largest speed that is expected \[m/s\], for the bound on the Mach number where it does not follow from faces and obstacles.
+    pub expected_speed: f64,
+}
+
+/// One face of the domain.
+#[derive(Clone)]
+pub enum Face<D: Dim> {
+    /// What leaves here enters through the face opposite.
+    Periodic,
+    /// A wall at the face, half a cell beyond the centres of the last cells, with a velocity along
+    /// itself \[m/s\].
+    Wall(D::Vec),
+    /// No flow through and no friction along the face.
+    FreeSlip,
+    /// Velocity \[m/s\] at the centres of the last cells.
+    Velocity(Profile<D>, OpenScheme),
+    /// Pressure over that at rest \[Pa\] at the centres of the last cells; flow along the face is zero.
+    Pressure(f64, OpenScheme),
+}
+
+impl<D: Dim> Face<D> {
+    /// A wall at rest.
+    pub const REST: Self = Self::Wall(D::Vec::ZERO);
+}
+
+impl<D: Dim> fmt::Debug for Face<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Periodic => f.write_str("Periodic"),
+            Self::Wall(velocity) => write!(f, "Wall({velocity:?})"),
+            Self::FreeSlip => f.write_str("FreeSlip"),
+            Self::Velocity(_, scheme) => write!(f, "Velocity(.., {scheme:?})"),
+            Self::Pressure(pressure, scheme) => write!(f, "Pressure({pressure}, {scheme:?})"),
+        }
+    }
+}
+
+/// A velocity \[m/s\] at each point \[m\] of a face.
+#[derive(Clone)]
+pub struct Profile<D: Dim>(pub(crate) Arc<dyn Fn(D::Vec) -> D::Vec + Send + Sync>);
+
+impl<D: Dim> Profile<D> {
+    /// From a function.
+    pub fn new(velocity: impl Fn(D::Vec) -> D::Vec + Send + Sync + 'static) -> Self {
+        Self(Arc::new(velocity))
+    }
+
+    /// The same velocity everywhere.
+    pub fn uniform(velocity: D::Vec) -> Self {
+        Self::new(move |_| velocity)
+    }
+}
+
+/// A body in the fluid, on which force and torque are measured.
+#[derive(Clone)]
+pub struct Obstacle<D: Dim> {
+    /// Name, for `force_on_<name>_x`.
+    pub name: String,
+    /// Shape.
+    pub shape: Arc<dyn Shape<D>>,
+    /// How its surface is met.
+    pub wall: WallScheme,
+    /// Velocity of its surface \[m/s\], about which it does not move.
+    pub velocity: D::Vec,
+    /// Rate of turning of its surface \[1/s\].
+    pub spin: D::Spin,
+}
+
+impl<D: Dim> Obstacle<D> {
+    /// A body at rest with interpolated wall.
+    pub fn new(name: impl Into<String>, shape: impl Shape<D> + 'static) -> Self {
+        Self {
+            name: name.into(),
+            shape: Arc::new(shape),
+            wall: WallScheme::default(),
+            velocity: D::Vec::ZERO,
+            spin: D::Spin::ZERO,
+        }
+    }
+}
+
+impl<D: Dim> fmt::Debug for Obstacle<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Obstacle").field("name", &self.name).field("wall", &self.wall).finish_non_exhaustive()
+    }
+}
+
+impl<D: Dim> fmt::Debug for Setup<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Setup")
+            .field("cells", &self.cells)
+            .field("spacing", &self.spacing)
+            .field("time_step", &self.time_step)
+            .field("viscosity", &self.viscosity)
+            .field("operator", &self.operator)
+            .field("faces", &self.faces)
+            .field("obstacles", &self.obstacles)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<D: Dim> Setup<D> {
+    /// Fluid of viscosity \[m^2/s\] in a periodic domain of `cells`, each of edge `spacing` \[m\], with
+    /// density 1000 kg/m^3 and a step \[s\] such that the relaxation time is `tau` steps.
+    pub fn new(cells: [usize; 3], spacing: f64, viscosity: f64, tau: f64) -> Self {
+        let faces = std::array::from_fn(|_| [Face::Periodic, Face::Periodic]);
+        Self {
+            cells,
+            spacing,
+            origin: D::Vec::ZERO,
+            time_step: (tau - 0.5) * spacing * spacing / (3.0 * viscosity),
+            viscosity,
+            density: 1000.0,
+            acceleration: D::Vec::ZERO,
+            operator: Operator::EXACT_WALLS,
+            smagorinsky: None,
+            faces,
+            obstacles: Vec::new(),
+            expected_speed: 0.0,
+        }
+    }
+
+    /// Relaxation time in steps: `1/2 + 3 nu dt / h^2`.
+    pub fn tau(&self) -> f64 {
+        0.5 + 3.0 * self.viscosity * self.time_step / (self.spacing * self.spacing)
+    }
+
+    /// One cell per step \[m/s\].
+    pub fn lattice_speed(&self) -> f64 {
+        self.spacing / self.time_step
+    }
+
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        let positive = [
+            ("spacing", self.spacing, "m"),
+            ("time step", self.time_step, "s"),
+            ("viscosity", self.viscosity, "m^2/s"),
+            ("density", self.density, "kg/m^3"),
+        ];
+        for (what, value, unit) in positive {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SetupError::new(what, format!("{value} {unit}"), "a positive number"));
+            }
+        }
+        for axis in 0..3 {
+            let (cells, least) = (self.cells[axis], if axis < D::N { 2 } else { 1 });
+            if cells < least || (axis >= D::N && cells != 1) {
+                let allowed = if axis < D::N { "at least 2" } else { "1 along z in the plane" };
+                return Err(SetupError::new("cells", format!("{cells} along axis {axis}"), allowed));
+            }
+            self.check_faces(axis)?;
+        }
+        if let Some(constant) = self.smagorinsky
+            && !(constant >= 0.0 && constant.is_finite())
+        {
+            return Err(SetupError::new("Smagorinsky constant", constant.to_string(), "zero or more"));
+        }
+        if !self.acceleration.is_finite() || !self.origin.is_finite() {
+            return Err(SetupError::new("acceleration or origin", "not finite".to_owned(), "finite numbers"));
+        }
+        self.check_rates()
+    }
+
+    fn check_faces(&self, axis: usize) -> Result<(), SetupError> {
+        let [low, high] = &self.faces[axis];
+        let is_periodic = |face: &Face<D>| matches!(face, Face::Periodic);
+        if is_periodic(low) != is_periodic(high) {
+            return Err(SetupError::new(
+                "faces",
+                format!("one periodic face along axis {axis}"),
+                "both or none of a pair periodic",
+            ));
+        }
+        for face in [low, high] {
+            if let Face::Wall(velocity) = face
+                && (!velocity.is_finite() || (axis < D::N && velocity.component(axis) != 0.0))
+            {
+                let value = format!("{velocity:?} along axis {axis}");
+                return Err(SetupError::new("velocity of a wall", value, "a velocity along the wall"));
+            }
+        }
+        let is_open = |axis: usize| {
+            self.faces[axis].iter().any(|face| matches!(face, Face::Velocity(..) | Face::Pressure(..)))
+        };
+        if is_open(axis) && (0..axis).any(is_open) {
+            let value = format!("open faces along axis {axis} and another");
+            return Err(SetupError::new("faces", value, "open faces along one axis"));
+        }
+        Ok(())
+    }
+
+    fn check_rates(&self) -> Result<(), SetupError> {
+        let rates = match self.operator {
+            Operator::MultipleRelaxation { ghosts, odd } => {
+                let odd = match odd {
+                    crate::OddRate::Rate(rate) => rate,
+                    crate::OddRate::Magic(_) => 1.0,
+                };
+                vec![ghosts[0], ghosts[1], ghosts[2], odd]
+            }
+            _ => Vec::new(),
+        };
+        if let Some(rate) = rates.into_iter().find(|rate| !(*rate > 0.0 && *rate < 2.0)) {
+            return Err(SetupError::new("relaxation rate", rate.to_string(), "between 0 and 2"));
+        }
+        let magic = self.operator.magic(self.tau());
+        if !(magic > 0.0 && magic.is_finite()) {
+            return Err(SetupError::new("Lambda", magic.to_string(), "above 0, such as 3/16"));
+        }
+        Ok(())
+    }
+}
+
+/// Why a flow could not be set up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SetupError {
+    /// What is wrong.
+    pub what: String,
+    /// The value found.
+    pub value: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+impl SetupError {
+    pub(crate) fn new(what: impl Into<String>, value: String, allowed: impl Into<String>) -> Self {
+        Self { what: what.into(), value, allowed: allowed.into() }
+    }
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is {}; allowed: {}", self.what, self.value, self.allowed)
+    }
+}
+
+impl std::error::Error for SetupError {}

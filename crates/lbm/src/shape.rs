@@ -1,0 +1,104 @@
+//! Shapes of obstacles.
+
+use granular_core::{Dim, Linear, Vector};
+
+/// A solid body.
+pub trait Shape<D: Dim>: Send + Sync {
+    /// Whether a point \[m\] lies inside.
+    fn contains(&self, point: D::Vec) -> bool;
+    /// Corners of a box \[m\] around it.
+    fn bounds(&self) -> (D::Vec, D::Vec);
+    /// Centre \[m\], about which torques are taken.
+    fn centre(&self) -> D::Vec {
+        let (low, high) = self.bounds();
+        (low + high) * 0.5
+    }
+    /// Share of the way from `outside` to `inside` \[m\] at which the surface is met, in (0, 1\].
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        while high - low > 1e-14 {
+            let middle = 0.5 * (low + high);
+            if self.contains(outside + (inside - outside) * middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        high
+    }
+}
+
+/// A disk or sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Ball<D: Dim> {
+    /// Centre \[m\].
+    pub centre: D::Vec,
+    /// Radius \[m\].
+    pub radius: f64,
+}
+
+impl<D: Dim> Shape<D> for Ball<D> {
+    fn contains(&self, point: D::Vec) -> bool {
+        (point - self.centre).length_squared() <= self.radius * self.radius
+    }
+
+    fn bounds(&self) -> (D::Vec, D::Vec) {
+        let mut reach = D::Vec::ZERO;
+        for axis in 0..D::N {
+            reach += D::Vec::along(axis, self.radius);
+        }
+        (self.centre - reach, self.centre + reach)
+    }
+
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        let (start, way) = (outside - self.centre, inside - outside);
+        let (a, b) = (way.length_squared(), start.dot(way));
+        let c = start.length_squared() - self.radius * self.radius;
+        // The nearer root, without cancellation: c > 0 and b < 0.
+        (c / (-b + (b * b - a * c).max(0.0).sqrt())).clamp(f64::MIN_POSITIVE, 1.0)
+    }
+}
+
+/// A box with edges along the axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<D: Dim> {
+    /// Lowest corner \[m\].
+    pub low: D::Vec,
+    /// Highest corner \[m\].
+    pub high: D::Vec,
+}
+
+impl<D: Dim> Shape<D> for Block<D> {
+    fn contains(&self, point: D::Vec) -> bool {
+        (0..D::N).all(|axis| {
+            let x = point.component(axis);
+            self.low.component(axis) <= x && x <= self.high.component(axis)
+        })
+    }
+
+    fn bounds(&self) -> (D::Vec, D::Vec) {
+        (self.low, self.high)
+    }
+}
+
+/// A polygon in the plane, its corners in order around it.
+#[derive(Clone, Debug)]
+pub struct Polygon {
+    /// Corners \[m\], three or more.
+    pub corners: Vec<granular_core::glam::DVec2>,
+}
+
+impl Shape<granular_core::D2> for Polygon {
+    fn contains(&self, point: granular_core::glam::DVec2) -> bool {
+        let ends = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
+        let crossed = ends.filter(|(a, b)| {
+            (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
+        });
+        crossed.count() % 2 == 1
+    }
+
+    fn bounds(&self) -> (granular_core::glam::DVec2, granular_core::glam::DVec2) {
+        let first = self.corners.first().copied().unwrap_or_default();
+        self.corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)))
+    }
+}

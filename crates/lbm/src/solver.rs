@@ -1,0 +1,186 @@
+//! The contract of every solver: limits, memory, state.
+
+use crate::lattice::Lattice;
+use crate::lbm::Lbm;
+use crate::open::Known;
+use crate::real::Real;
+use crate::setup::{Face, Setup};
+use crate::{Operator, show};
+use granular_core::{
+    Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Section, Shown, SnapshotError, Solver,
+    StepError, StepLimit, StepRule, Vector,
+};
+
+/// Largest Mach number; errors of compressibility grow with its square.
+const MACH: f64 = 0.3;
+/// Largest speed times cell over viscosity that one relaxation time bears, and others.
+const GRID_REYNOLDS: [f64; 2] = [10.0, 50.0];
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
+    /// Largest speed that faces, obstacles and the setup name \[m/s\].
+    pub fn largest_expected_speed(&self) -> f64 {
+        let setup = &self.setup;
+        let walls = setup.faces.iter().flatten().map(|face| match face {
+            Face::Wall(velocity) => velocity.length(),
+            _ => 0.0,
+        });
+        let open = self.beyond.open.iter().filter(|face| face.known == Known::Velocity);
+        let entering = open.flat_map(|face| &face.cells).map(|(_, velocity, _)| {
+            velocity.iter().map(|c| c * c).sum::<f64>().sqrt() * setup.lattice_speed()
+        });
+        let bodies = setup.obstacles.iter().map(|body| {
+            let (low, high) = body.shape.bounds();
+            body.velocity.length() + body.spin.length() * 0.5 * (high - low).length()
+        });
+        walls.chain(entering).chain(bodies).fold(setup.expected_speed, f64::max)
+    }
+
+    fn report_limits(&self, report: &mut Limits) {
+        let setup = &self.setup;
+        let Setup { spacing, viscosity, time_step, .. } = *setup;
+        let (tau, speed) = (setup.tau(), self.largest_expected_speed());
+        report.steps.push(StepLimit {
+            name: "lattice",
+            dt: time_step,
+            rule: StepRule::Exactly,
+            why: format!(
+                "relaxation time {tau:.5} steps, {:.4} m/s per cell and step, Lambda {:.4}",
+                setup.lattice_speed(),
+                setup.operator.magic(tau)
+            ),
+        });
+        let sound = setup.lattice_speed() / 3.0_f64.sqrt();
+        let longest = MACH * spacing / (3.0_f64.sqrt() * speed);
+        report.bounds.push(Bound {
+            name: "Mach number",
+            value: speed / sound,
+            allowed: MACH,
+            unit: "",
+            refuses: true,
+            why: format!(
+                "largest speed {speed:.4} m/s over that of sound on the lattice; a step of at most {longest:.3e} s keeps \
+                 it, and the error falls with the square of the step"
+            ),
+        });
+        let single = setup.operator == Operator::SingleRelaxation && setup.smagorinsky.is_none();
+        let allowed = GRID_REYNOLDS[usize::from(!single)];
+        report.bounds.push(Bound {
+            name: "grid Reynolds number",
+            value: speed * spacing / viscosity,
+            allowed,
+            unit: "",
+            refuses: false,
+            why: format!(
+                "largest speed times cell over viscosity; cells of {:.3e} m keep it, a closure or another operator \
+                 bears more",
+                allowed * viscosity / speed
+            ),
+        });
+    }
+
+    fn memory_in_use(&self) -> Memory {
+        let populations = self.populations.values.len() * size_of::<T>();
+        let links = self.beyond.copies.bytes()
+            + self.beyond.obstacles.iter().map(|cuts| cuts.bytes()).sum::<usize>()
+            + self.beyond.open.iter().map(|face| face.cells.capacity() * 40).sum::<usize>();
+        let bytes = populations + links + self.runs.bytes() + 2 * self.cover.capacity();
+        let mut left_out = Vec::new();
+        let mut note = |is_off: bool, text: &str| {
+            if is_off {
+                left_out.push(text.to_owned());
+            }
+        };
+        note(!self.physics.has_force(), "body force: none is set");
+        note(!self.physics.has_closure(), "eddy viscosity: no Smagorinsky constant is set");
+        note(!self.physics.has_ghosts(), "rates of energy moments: the operator has none");
+        note(self.cover.is_empty(), "cells covered by obstacles: there are none");
+        note(self.beyond.open.is_empty(), "open faces: there are none");
+        left_out.push("density and velocity: computed from populations when an output asks".to_owned());
+        Memory { bytes, bytes_per_item: bytes / self.setup.cells.iter().product::<usize>().max(1), left_out }
+    }
+}
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
+    fn name(&self) -> &'static str {
+        "lattice Boltzmann"
+    }
+
+    fn size(&self) -> (usize, &'static str) {
+        (self.setup.cells.iter().product(), "cell")
+    }
+
+    fn limits(&self, report: &mut Limits) {
+        self.report_limits(report);
+    }
+
+    fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        self.advance_by(dt, steps)
+    }
+
+    fn location(&self) -> Location<'_> {
+        let mut origin = self.setup.origin.padded();
+        let spacing = self.setup.spacing;
+        // One layer of cells about z = 0 in the plane.
+        if L::Dim::N == 2 {
+            origin[2] = -0.5 * spacing;
+        }
+        Location::Grid { origin, spacing: [spacing; 3], cells: self.setup.cells }
+    }
+
+    fn shown(&self) -> Vec<Shown> {
+        show::shown(self)
+    }
+
+    fn show(&self, sink: &mut dyn FieldSink) {
+        show::show(self, sink);
+    }
+
+    fn save(&self, to: &mut Section) {
+        to.put_text("lattice", L::NAME);
+        to.put_one("steps", self.steps);
+        // What enters each cell, whatever the layout: the same bytes at odd and even steps.
+        let entering: Vec<T> =
+            self.fluid().flat_map(|(_, place)| self.populations.entering::<L, Q>(place)).collect();
+        to.put("populations", &entering);
+        let loads: Vec<[f64; 6]> = self
+            .beyond
+            .obstacles
+            .iter()
+            .map(|body| {
+                let ([a, b, c], [d, e, f]) = (body.force, body.torque);
+                [a, b, c, d, e, f]
+            })
+            .collect();
+        to.put("force and torque on obstacles", &loads);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let lattice = from.text("lattice")?;
+        if lattice != L::NAME {
+            let found = format!("{lattice} where {} is expected", L::NAME);
+            return Err(SnapshotError::Damaged { place: "solver/lattice".to_owned(), found });
+        }
+        let steps = from.one("steps")?;
+        let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
+        let loads: Vec<[f64; 6]> =
+            from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;
+        if !loads.iter().flatten().all(|component| component.is_finite()) {
+            let place = "solver/force and torque on obstacles".to_owned();
+            return Err(SnapshotError::Damaged { place, found: "a number that is not finite".to_owned() });
+        }
+        let places: Vec<usize> = self.fluid().map(|(_, place)| place).collect();
+        for (place, values) in places.into_iter().zip(populations.chunks_exact(Q)) {
+            let values = std::array::from_fn(|i| values[i]);
+            self.populations.set_entering::<L, Q>(place, values);
+        }
+        for (body, [a, b, c, d, e, f]) in self.beyond.obstacles.iter_mut().zip(loads) {
+            (body.force, body.torque) = ([a, b, c], [d, e, f]);
+        }
+        self.steps = steps;
+        Ok(())
+    }
+
+    fn memory(&self) -> Memory {
+        self.memory_in_use()
+    }
+}

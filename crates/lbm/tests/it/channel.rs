@@ -1,0 +1,87 @@
+//! Flow between parallel plates.
+
+use granular_core::{Dim, Solver, Vector};
+use granular_lbm::*;
+
+const HEIGHT: usize = 9;
+/// So small that the square of the Mach number is round-off.
+const ACCELERATION: f64 = 1e-6;
+
+fn operators() -> Vec<(&'static str, Operator)> {
+    vec![
+        ("single", Operator::SingleRelaxation),
+        ("two", Operator::TwoRelaxation { magic: 0.25 }),
+        ("exact", Operator::EXACT_WALLS),
+        ("kumar", Operator::KUMAR),
+        ("regularised", Operator::Regularised),
+    ]
+}
+
+/// A channel along x with plates across `axis`, driven by a body force, at rest.
+fn channel<L: Lattice<Q>, const Q: usize>(operator: Operator, tau: f64, across: usize) -> Lbm<L, Q> {
+    let mut cells = [3, 3, if L::Dim::N == 3 { 3 } else { 1 }];
+    cells[across] = HEIGHT;
+    let mut setup = Setup::<L::Dim>::new(cells, 1.0, 1.0, tau);
+    setup.operator = operator;
+    setup.faces[across] = [Face::REST, Face::REST];
+    setup.time_step = (tau - 0.5) / 3.0;
+    setup.acceleration = Vector::along(0, ACCELERATION);
+    Lbm::new(setup).unwrap()
+}
+
+/// Largest difference from the parabola with the slip of `Lambda`, over the largest speed.
+fn error_of_steady<L: Lattice<Q>, const Q: usize>(operator: Operator, tau: f64, across: usize) -> f64 {
+    let mut lbm = channel::<L, Q>(operator, tau, across);
+    let h = HEIGHT as f64;
+    let dt = lbm.setup().time_step;
+    lbm.advance(dt, (12.0 * h * h / dt) as u64).unwrap();
+    let peak = ACCELERATION * h * h / 8.0;
+    let slip = (16.0 * operator.magic(tau) - 3.0) / (3.0 * h * h);
+    let speed = |k: usize| {
+        let y = (k as f64 + 0.5) / h;
+        peak * (4.0 * y * (1.0 - y) + slip)
+    };
+    (0..HEIGHT)
+        .map(|k| {
+            let mut cell = [1, 1, 0];
+            cell[across] = k;
+            (lbm.flow(cell).unwrap().velocity.component(0) - speed(k)).abs() / peak
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn slip_follows_from_lambda_for_every_operator() {
+    for (name, operator) in operators() {
+        for tau in [0.6, 0.933, 1.7] {
+            let plane = error_of_steady::<D2Q9, 9>(operator, tau, 1);
+            let space = error_of_steady::<D3Q19, 19>(operator, tau, 2);
+            println!("{name} tau {tau}: {plane:.2e} {space:.2e}");
+            assert!(plane < 1e-10 && space < 1e-10, "{name} at tau {tau}: {plane:e}, {space:e}");
+        }
+    }
+}
+
+/// A pressure gradient `G` lets the fluid slip by `3 G / 2` more than a body force does, in lattice units: what a
+/// wall sends back was not pushed. Relative to the peak that is `4 (tau - 1/2) / H^2`.
+#[test]
+fn pressure_drives_the_same_parabola_with_a_slip_of_second_order() {
+    for tau in [0.6, 0.9, 1.7] {
+        let h = HEIGHT as f64;
+        let mut setup = Setup::new([60, HEIGHT, 1], 1.0, 1.0, tau);
+        setup.operator = Operator::TwoRelaxation { magic: 3.0 / 16.0 };
+        let drop = 1e-8 * setup.density * setup.lattice_speed().powi(2);
+        setup.faces[0] = [Face::Pressure(drop, OpenScheme::ZouHe), Face::Pressure(0.0, OpenScheme::ZouHe)];
+        setup.faces[1] = [Face::REST, Face::REST];
+        let peak = drop / 59.0 * h * h / (8.0 * setup.density * setup.viscosity);
+        let mut lbm = Lbm2::new(setup).unwrap();
+        lbm.advance(lbm.setup().time_step, 30_000).unwrap();
+        // The corners of the open faces disturb the cells near them, and less by a third per cell from there.
+        for (x, k) in (28..32).flat_map(|x| (0..HEIGHT).map(move |k| (x, k))) {
+            let y = (k as f64 + 0.5) / h;
+            let expected = 4.0 * y * (1.0 - y) + 4.0 * (tau - 0.5) / (h * h);
+            let speed = lbm.flow([x, k, 0]).unwrap().velocity.x / peak;
+            assert!((speed - expected).abs() < 1e-6, "tau {tau}, cell {x} {k}: {speed}, {expected}");
+        }
+    }
+}

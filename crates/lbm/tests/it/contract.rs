@@ -1,0 +1,43 @@
+//! The contract of every solver.
+
+use granular_core::contract_tests;
+use granular_core::glam::{DVec2, DVec3};
+use granular_lbm::*;
+
+fn cavity() -> Lbm2 {
+    let mut setup = Setup::new([37, 70, 1], 1e-3, 1e-6, 0.56);
+    setup.faces[0] = [Face::REST, Face::REST];
+    setup.faces[1] = [Face::REST, Face::Wall(DVec2::new(0.005, 0.0))];
+    setup.smagorinsky = Some(0.1);
+    Lbm2::new(setup).unwrap()
+}
+
+fn spheres() -> Lbm3 {
+    let mut setup = Setup::new([22, 14, 13], 1e-3, 1e-6, 0.7);
+    setup.faces[0] = [
+        Face::Velocity(Profile::uniform(DVec3::new(0.0008, 0.0, 0.0)), OpenScheme::Regularised),
+        Face::Pressure(0.0, OpenScheme::ZouHe),
+    ];
+    setup.faces[1] = [Face::FreeSlip, Face::REST];
+    setup.acceleration = DVec3::new(0.0, -1e-5, 0.0);
+    setup
+        .obstacles
+        .push(Obstacle::new("sphere", Ball { centre: DVec3::new(0.009, 0.006, 0.0125), radius: 0.0031 }));
+    Lbm3::new(setup).unwrap()
+}
+
+fn disk_in_stream() -> Lbm<D2Q9, 9, f32> {
+    let mut setup = Setup::new([60, 41, 1], 1e-3, 1e-6, 0.6);
+    setup.operator = Operator::TwoRelaxation { magic: 0.25 };
+    setup.acceleration = DVec2::new(1e-4, 0.0);
+    setup.obstacles.push(Obstacle::new("disk", Ball { centre: DVec2::new(0.0591, 0.02), radius: 0.0052 }));
+    Lbm::new(setup).unwrap()
+}
+
+fn step(tau: f64) -> f64 {
+    Setup::<granular_core::D2>::new([2, 2, 1], 1e-3, 1e-6, tau).time_step
+}
+
+contract_tests!(cavity_with_closure, cavity, step(0.56));
+contract_tests!(sphere_between_open_faces, spheres, step(0.7));
+contract_tests!(disk_through_a_periodic_face_in_single_precision, disk_in_stream, step(0.6));

@@ -1,0 +1,13 @@
+//! Tests of the lattice Boltzmann solver.
+
+// Outside `#[test]` functions clippy does not see that this is a test.
+#![allow(clippy::unwrap_used)]
+
+mod channel;
+mod contract;
+mod lattices;
+mod symmetry;
+
+#[global_allocator]
+static ALLOCATOR: granular_core::testing::CountingAllocator =
+    granular_core::testing::CountingAllocator::new();
