@@ -37,9 +37,10 @@
 //! | [`Obstacle`] | any [`Shape`]; half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
 //!
-//! Limits: obstacles do not move from their place; open faces along one axis; a pressure gradient lets fluid
-//! slip at half-way walls by `4 (tau - 1/2) / H^2` of the peak more than a body force does, which
-//! is of second order.
+//! Limits: obstacles do not move from their place; open faces along one axis. A sudden start between
+//! pressures leaves a momentum of alternating sign from cell to cell and step to step that nothing damps
+//! (3/2 of the pressure drop per cell, in lattice units): start from the pressure at rest with
+//! [`Lbm::set_flow`], or take the mean over two steps.
 
 // Components and directions index several arrays at once.
 #![allow(clippy::needless_range_loop)]

@@ -62,10 +62,11 @@ fn slip_follows_from_lambda_for_every_operator() {
     }
 }
 
-/// A pressure gradient `G` lets the fluid slip by `3 G / 2` more than a body force does, in lattice units: what a
-/// wall sends back was not pushed. Relative to the peak that is `4 (tau - 1/2) / H^2`.
+/// Between open faces at given pressures the parabola is exact too, at `Lambda = 3/16`. A sudden start leaves a
+/// momentum that changes sign from cell to cell and from step to step, which nothing in the linear scheme damps (a
+/// staggered invariant): the mean over two steps is free of it.
 #[test]
-fn pressure_drives_the_same_parabola_with_a_slip_of_second_order() {
+fn pressure_drives_the_same_parabola() {
     for tau in [0.6, 0.9, 1.7] {
         let h = HEIGHT as f64;
         let mut setup = Setup::new([40, HEIGHT, 1], 1.0, 1.0, tau);
@@ -75,13 +76,26 @@ fn pressure_drives_the_same_parabola_with_a_slip_of_second_order() {
         setup.faces[1] = [Face::REST, Face::REST];
         let peak = drop / 39.0 * h * h / (8.0 * setup.density * setup.viscosity);
         let mut lbm = Lbm2::new(setup).unwrap();
-        lbm.advance(lbm.setup().time_step, 100_000).unwrap();
-        // The corners of the open faces disturb the cells near them, a third less with each cell.
-        for (x, k) in (19..21).flat_map(|x| (0..HEIGHT).map(move |k| (x, k))) {
+        let dt = lbm.setup().time_step;
+        lbm.advance(dt, 100_000).unwrap();
+        let mut later = Lbm2::new(lbm.setup().clone()).unwrap();
+        later.advance(dt, 100_001).unwrap();
+        // The corners of the open faces disturb the cells near them and take some of the pressure: what is left
+        // drives the middle.
+        let pressure = |x: usize| lbm.flow([x, 4, 0]).unwrap().pressure;
+        let share = (pressure(15) - pressure(25)) / (10.0 * drop / 39.0);
+        assert!((share - 1.0).abs() < 5e-4, "tau {tau}: {share}");
+        for (x, k) in (15..25).flat_map(|x| (0..HEIGHT).map(move |k| (x, k))) {
             let y = (k as f64 + 0.5) / h;
-            let expected = 4.0 * y * (1.0 - y) + 4.0 * (tau - 0.5) / (h * h);
-            let speed = lbm.flow([x, k, 0]).unwrap().velocity.x / peak;
-            assert!((speed - expected).abs() < 2e-6, "tau {tau}, cell {x} {k}: {speed}, {expected}");
+            let speed = |lbm: &Lbm2| lbm.flow([x, k, 0]).unwrap().velocity.x / peak;
+            let (one, two) = (speed(&lbm), speed(&later));
+            let expected = 4.0 * y * (1.0 - y);
+            assert!(
+                (0.5 * (one + two) - expected).abs() < 1e-5,
+                "tau {tau}, cell {x} {k}: {one}, {two}, {expected}"
+            );
+            let staggered = 4.0 * (tau - 0.5) / (h * h);
+            assert!((0.5 * (one - two).abs() - staggered).abs() < 1e-4, "tau {tau}: {one} {two} {staggered}");
         }
     }
 }
