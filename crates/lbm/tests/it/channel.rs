@@ -89,7 +89,7 @@ fn pressure_drives_the_same_parabola() {
             let y = (k as f64 + 0.5) / h;
             let speed = |lbm: &Lbm2| lbm.flow([x, k, 0]).unwrap().velocity.x / peak;
             let (one, two) = (speed(&lbm), speed(&later));
-            let expected = 4.0 * y * (1.0 - y);
+            let expected = share * 4.0 * y * (1.0 - y);
             assert!(
                 (0.5 * (one + two) - expected).abs() < 1e-5,
                 "tau {tau}, cell {x} {k}: {one}, {two}, {expected}"
