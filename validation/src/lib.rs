@@ -19,3 +19,15 @@ pub const RESTITUTION: &str = include_str!("../restitution/reference.csv");
 pub const GRADING: &str = include_str!("../grading/reference.csv");
 /// Run-out of columns of aspect ratio 0.8 in the literature.
 pub const COLUMN_RUNOUT: &str = include_str!("../column_runout/reference.csv");
+/// Speed in a started channel over time and height.
+pub const POISEUILLE: &str = include_str!("../poiseuille/reference.csv");
+/// Speed between plates, one of which starts to move, over time and height.
+pub const COUETTE: &str = include_str!("../couette/reference.csv");
+/// Velocity along the lid on the vertical centre line of a cavity.
+pub const CAVITY_U: &str = include_str!("../cavity/reference_u.csv");
+/// Velocity across on the horizontal centre line of a cavity.
+pub const CAVITY_V: &str = include_str!("../cavity/reference_v.csv");
+/// Drag of a square array of disks over solid fraction.
+pub const SQUARE_ARRAY: &str = include_str!("../square_array/reference.csv");
+/// Coefficients of a cylinder in a channel.
+pub const CYLINDER: &str = include_str!("../cylinder/reference.csv");

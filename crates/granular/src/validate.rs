@@ -16,6 +16,7 @@ mod claims;
 pub(crate) mod collapse;
 mod conservation;
 pub(crate) mod fit;
+mod fluid;
 mod grading;
 pub(crate) mod impact;
 mod incline;
@@ -71,6 +72,29 @@ pub const CASES: &[Case] = &[
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
+    Case {
+        name: "poiseuille",
+        about: "flow between plates, steady and started",
+        run: fluid::channel::poiseuille,
+    },
+    Case { name: "couette", about: "a plate starts to move", run: fluid::channel::couette },
+    Case { name: "womersley", about: "oscillating flow between plates", run: fluid::channel::womersley },
+    Case {
+        name: "taylor_green",
+        about: "decaying vortices: viscosity and order",
+        run: fluid::decay::taylor_green,
+    },
+    Case { name: "cavity", about: "a cavity under a moving lid", run: fluid::cavity::run },
+    Case { name: "cylinder", about: "drag and lift of a cylinder in a channel", run: fluid::cylinder::run },
+    Case { name: "square_array", about: "drag of a square array of disks", run: fluid::bodies::square_array },
+    Case {
+        name: "disk_in_channel",
+        about: "drag of a disk in a channel",
+        run: fluid::bodies::disk_in_channel,
+    },
+    Case { name: "carried_disk", about: "a disk carried by a stream", run: fluid::bodies::carried_disk },
+    Case { name: "fluid_mass", about: "mass of a fluid between walls", run: fluid::balance::mass },
+    Case { name: "hydrostatic", about: "a fluid at rest under gravity", run: fluid::balance::hydrostatic },
     Case { name: "column_runout", about: "run-out of a column of aspect ratio 0.8", run: claims::run_out },
 ];
 

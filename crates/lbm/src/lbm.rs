@@ -120,9 +120,18 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 *row = std::array::from_fn(|component| high[component] - low[component]);
             }
             let f = started::<L, Q>(excess, lattice_velocity(centre), gradient, &self.physics);
+            // What enters from beyond the fluid too: boundaries act from the first step on.
             self.populations.set_entering::<L, Q>(place, f.map(T::of));
         }
-        self.apply_boundaries();
+    }
+
+    /// Sets the body force per mass \[m/s^2\], from the next step on.
+    pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) {
+        let Setup { spacing, time_step, .. } = self.setup;
+        self.setup.acceleration = acceleration;
+        self.physics.force = acceleration.padded().map(|a| a * time_step.powi(2) / spacing);
+        self.parameters = self.physics.parameters::<L, T, Q>();
+        self.step = step_function::<L, T, Q>(&self.physics);
     }
 
     fn apply_boundaries(&mut self) {

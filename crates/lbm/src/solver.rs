@@ -138,6 +138,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
     fn save(&self, to: &mut Section) {
         to.put_text("lattice", L::NAME);
         to.put_one("steps", self.steps);
+        to.put_one("acceleration", self.setup.acceleration);
         // What enters each cell, whatever the layout: the same bytes at odd and even steps.
         let entering: Vec<T> =
             self.fluid().flat_map(|(_, place)| self.populations.entering::<L, Q>(place)).collect();
@@ -161,13 +162,19 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             return Err(SnapshotError::Damaged { place: "solver/lattice".to_owned(), found });
         }
         let steps = from.one("steps")?;
+        let acceleration: <L::Dim as Dim>::Vec = from.one("acceleration")?;
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;
-        if !loads.iter().flatten().all(|component| component.is_finite()) {
-            let place = "solver/force and torque on obstacles".to_owned();
-            return Err(SnapshotError::Damaged { place, found: "a number that is not finite".to_owned() });
+        let are_finite = [
+            ("acceleration", acceleration.is_finite()),
+            ("force and torque on obstacles", loads.iter().flatten().all(|c| c.is_finite())),
+        ];
+        if let Some((name, _)) = are_finite.into_iter().find(|(_, is_finite)| !is_finite) {
+            let found = "a number that is not finite".to_owned();
+            return Err(SnapshotError::Damaged { place: format!("solver/{name}"), found });
         }
+        self.set_acceleration(acceleration);
         let places: Vec<usize> = self.fluid().map(|(_, place)| place).collect();
         for (place, values) in places.into_iter().zip(populations.chunks_exact(Q)) {
             let values = std::array::from_fn(|i| values[i]);

@@ -2,15 +2,26 @@
 
 mod ball_on_incline;
 mod bouncing_ball;
+mod carried_disk;
+mod cavity;
 mod column_runout;
 mod contact_time;
+mod couette;
+mod cylinder;
+mod disk_in_channel;
 mod disk_on_incline;
 mod energy_balance;
+mod fluid_mass;
 mod grading;
+mod hydrostatic;
 mod momentum;
 mod oblique_impact;
+mod poiseuille;
 mod restitution;
 mod sliding_to_rolling;
+mod square_array;
+mod taylor_green;
+mod womersley;
 
 use granular::validate::{CASES, Effort, find, table};
 

@@ -1,0 +1,8 @@
+//! Flow between plates.
+
+use super::passes;
+
+#[test]
+fn required_rows_pass() {
+    passes("poiseuille");
+}
