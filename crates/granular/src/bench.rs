@@ -2,10 +2,11 @@
 //!
 //! [`precision`] studies measure how the error of a case falls with what a run costs; they give a
 //! [`Study`] with its Pareto front and fitted orders. [`speed`] measures how many grain-steps a
-//! second the solver takes.
+//! second grains take, [`lattice`] how many cell updates a fluid.
 
 mod column;
 mod figure;
+pub mod lattice;
 mod restitution;
 pub mod speed;
 mod state;

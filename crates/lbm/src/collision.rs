@@ -9,6 +9,7 @@
 
 use crate::lattice::Lattice;
 use crate::real::Real;
+use granular_core::Dim;
 
 /// How the departure from equilibrium is relaxed. `tau` is the relaxation time in steps, from the
 /// viscosity; `Lambda = (tau - 1/2) (tau_odd - 1/2)`.
@@ -168,13 +169,21 @@ impl Physics {
 /// Relaxation time with the closure of Smagorinsky, in closed form: the eddy viscosity is
 /// `(C h)^2 |S|` with `|S| = sqrt(2 S:S)`, and `S` follows from the stress itself \[Hou1996\].
 #[inline(always)]
-fn closed_tau<T: Real, const FUSED: bool>(
+fn closed_tau<L: Lattice<Q>, T: Real, const FUSED: bool, const Q: usize>(
     p: &Parameters<T>,
-    [xx, yy, zz, xy, xz, yz]: [T; 6],
+    stress: [T; 6],
     inverse_density: T,
 ) -> T {
-    let mixed = dot::<T, FUSED>([xy, xz, yz], [xy, xz, yz]);
-    let squared = T::of(2.0).times_plus::<FUSED>(mixed, dot::<T, FUSED>([xx, yy, zz], [xx, yy, zz]));
+    // Off the diagonal, each component stands for two.
+    let axes = L::Dim::N;
+    let mut mixed = stress[3] * stress[3];
+    for i in 4..3 + axes * (axes - 1) / 2 {
+        mixed = stress[i].times_plus::<FUSED>(stress[i], mixed);
+    }
+    let mut squared = mixed + mixed;
+    for i in 0..axes {
+        squared = stress[i].times_plus::<FUSED>(stress[i], squared);
+    }
     let strained = (p.closure * inverse_density).times_plus::<FUSED>(squared.sqrt(), p.tau * p.tau);
     T::of(0.5) * (p.tau + strained.sqrt())
 }
@@ -202,12 +211,14 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
     let (half, zero) = (T::of(0.5), T::of(0.0));
     let weight = |i: usize, factor: f64| T::of(factor * L::WEIGHTS[i]);
     let (mut even, mut odd) = ([zero; Q], [zero; Q]);
-    let mut excess = f[0];
+    // Two sums side by side: everything waits for the density.
+    let mut sums = [f[0], zero];
     for i in (1..Q).step_by(2) {
         even[i] = f[i] + f[i + 1];
         odd[i] = f[i] - f[i + 1];
-        excess += even[i];
+        sums[i / 2 % 2] = if i == 3 { even[i] } else { sums[i / 2 % 2] + even[i] };
     }
+    let excess = sums[0] + sums[1];
     let density = T::of(1.0) + excess;
     let inverse = T::of(1.0) / density;
     let mut momentum = L::first_moment(&odd);
@@ -219,7 +230,7 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
     let velocity = momentum.map(|component| component * inverse);
     let along = L::along(velocity);
     // Pressure less dynamic pressure, the same in all directions.
-    let common = dot::<T, FUSED>(velocity, momentum).times_plus::<FUSED>(T::of(-1.5), excess);
+    let common = dot::<L, T, FUSED, Q>(velocity, momentum).times_plus::<FUSED>(T::of(-1.5), excess);
     even[0] = f[0] - weight(0, 1.0) * common;
     for i in (1..Q).step_by(2) {
         let flow = density * along[i];
@@ -230,7 +241,7 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
     // Half of what the force adds.
     let (mut gained, mut pushed) = ([zero; Q], [zero; Q]);
     if P::FORCE {
-        let (work, force) = (dot::<T, FUSED>(velocity, p.force), L::along(p.force));
+        let (work, force) = (dot::<L, T, FUSED, Q>(velocity, p.force), L::along(p.force));
         gained[0] = -(weight(0, 1.5) * work);
         even[0] += gained[0];
         for i in (1..Q).step_by(2) {
@@ -241,7 +252,7 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
         }
     }
     let [even_rate, odd_rate] = if P::CLOSURE {
-        rates_at(p, closed_tau::<T, FUSED>(p, L::second_moment(&even), inverse))
+        rates_at(p, closed_tau::<L, T, FUSED, Q>(p, L::second_moment(&even), inverse))
     } else {
         [p.even, p.odd]
     };
@@ -278,7 +289,12 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
     after
 }
 
+/// Inner product over the axes of a lattice.
 #[inline(always)]
-fn dot<T: Real, const FUSED: bool>(a: [T; 3], b: [T; 3]) -> T {
-    a[0].times_plus::<FUSED>(b[0], a[1].times_plus::<FUSED>(b[1], a[2] * b[2]))
+fn dot<L: Lattice<Q>, T: Real, const FUSED: bool, const Q: usize>(a: [T; 3], b: [T; 3]) -> T {
+    let mut sum = a[0] * b[0];
+    for axis in 1..L::Dim::N {
+        sum = a[axis].times_plus::<FUSED>(b[axis], sum);
+    }
+    sum
 }

@@ -49,7 +49,7 @@ pub struct Speed {
     pub scene: String,
     /// Law and scheme.
     pub scheme: &'static str,
-    /// Number of disks.
+    /// Number of disks or cells.
     pub n: usize,
     /// Threads.
     pub threads: usize,
@@ -57,9 +57,10 @@ pub struct Speed {
     pub rate: f64,
     /// Unit of the speed.
     pub unit: &'static str,
-    /// Bytes that the solver holds for a grain.
+    /// Bytes that the solver holds for a grain or cell.
     pub bytes_per_item: usize,
-    /// Bytes moved over those that a triad moves in the same time; an estimate from above.
+    /// Bytes moved over those that the memory moves in the same time: for grains against a triad, an
+    /// estimate from above; for cells, each population read and written once, against an update in place.
     pub bandwidth_share: f64,
 }
 
@@ -136,14 +137,15 @@ fn measure(
 
 /// Speeds as a table.
 pub fn table(speeds: &[Speed]) -> String {
+    let unit = speeds.first().map_or("", |speed| speed.unit);
     let mut text = format!(
-        "{:<30} {:>8} {:>8} {:>16} {:>12} {:>16}\n",
-        "scene", "disks", "threads", "grain-steps/s", "bytes/grain", "bandwidth share"
+        "{:<16} {:<44} {:>9} {:>8} {:>14} {:>7} {:>16}\n",
+        "scene", "scheme", "n", "threads", unit, "bytes", "bandwidth share"
     );
     for speed in speeds {
-        let Speed { scene, n, threads, rate, bytes_per_item, bandwidth_share, .. } = speed;
+        let Speed { scene, scheme, n, threads, rate, bytes_per_item, bandwidth_share, .. } = speed;
         text += &format!(
-            "{scene:<30} {n:>8} {threads:>8} {rate:>16.3e} {bytes_per_item:>12} {bandwidth_share:>16.2}\n"
+            "{scene:<16} {scheme:<44} {n:>9} {threads:>8} {rate:>14.4e} {bytes_per_item:>7} {bandwidth_share:>16.2}\n"
         );
     }
     text

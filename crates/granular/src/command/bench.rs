@@ -2,7 +2,7 @@
 
 use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
-use granular::bench::{self, Precision, speed};
+use granular::bench::{self, Precision, lattice, speed};
 use granular::failure::Failure;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -41,11 +41,13 @@ pub(super) enum Case {
 pub(super) enum Solver {
     /// Discrete element method.
     Dem,
+    /// Lattice Boltzmann method; takes 2 GB of memory.
+    Lbm,
 }
 
 #[derive(Args, Debug)]
 pub(super) struct Speed {
-    /// Numbers of grains.
+    /// Numbers of grains; fluids have boxes of their own.
     #[arg(long, value_delimiter = ',', default_value = "3000,13000,100000")]
     sizes: Vec<usize>,
     /// Numbers of threads, each in a pool of its own.
@@ -76,10 +78,14 @@ impl Bench {
                 let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
                 show(common, &json!(study), || format!("{study}{files}"));
             }
-            Self::Speed { solver: Solver::Dem, flags } => {
+            Self::Speed { solver, flags } => {
                 let Speed { sizes, pools: threads, repeats, state, write_state } = flags;
-                let request = speed::Request { sizes, threads, repeats, state, write_state };
-                let speeds = speed::dem(&request)?;
+                let speeds = match solver {
+                    Solver::Dem => {
+                        speed::dem(&speed::Request { sizes, threads, repeats, state, write_state })?
+                    }
+                    Solver::Lbm => lattice::lbm(&lattice::Request { threads, repeats })?,
+                };
                 show(common, &json!(speeds), || speed::table(&speeds));
             }
         }

@@ -6,6 +6,7 @@
 mod channel;
 mod contract;
 mod lattices;
+mod limits;
 mod symmetry;
 
 #[global_allocator]
