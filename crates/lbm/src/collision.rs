@@ -169,7 +169,7 @@ impl Physics {
 /// Relaxation time with the closure of Smagorinsky, in closed form: the eddy viscosity is
 /// `(C h)^2 |S|` with `|S| = sqrt(2 S:S)`, and `S` follows from the stress itself \[Hou1996\].
 #[inline(always)]
-fn closed_tau<L: Lattice<Q>, T: Real, const FUSED: bool, const Q: usize>(
+fn closed_tau<L: Lattice<Q>, T: Real, const Q: usize>(
     p: &Parameters<T>,
     stress: [T; 6],
     inverse_density: T,
@@ -178,13 +178,13 @@ fn closed_tau<L: Lattice<Q>, T: Real, const FUSED: bool, const Q: usize>(
     let axes = L::Dim::N;
     let mut mixed = stress[3] * stress[3];
     for i in 4..3 + axes * (axes - 1) / 2 {
-        mixed = stress[i].times_plus::<FUSED>(stress[i], mixed);
+        mixed += stress[i] * stress[i];
     }
     let mut squared = mixed + mixed;
     for i in 0..axes {
-        squared = stress[i].times_plus::<FUSED>(stress[i], squared);
+        squared += stress[i] * stress[i];
     }
-    let strained = (p.closure * inverse_density).times_plus::<FUSED>(squared.sqrt(), p.tau * p.tau);
+    let strained = p.closure * inverse_density * squared.sqrt() + p.tau * p.tau;
     T::of(0.5) * (p.tau + strained.sqrt())
 }
 
@@ -204,7 +204,7 @@ fn rates_at<T: Real>(p: &Parameters<T>, tau: T) -> [T; 2] {
 /// Works on pairs of opposite directions: `even` is their sum and `odd` their difference, here as departures from equilibrium
 /// plus half of the force.
 #[inline(always)]
-pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const Q: usize>(
+pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
     f: [T; Q],
     p: &Parameters<T>,
 ) -> [T; Q] {
@@ -230,18 +230,18 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
     let velocity = momentum.map(|component| component * inverse);
     let along = L::along(velocity);
     // Pressure less dynamic pressure, the same in all directions.
-    let common = dot::<L, T, FUSED, Q>(velocity, momentum).times_plus::<FUSED>(T::of(-1.5), excess);
+    let common = excess - T::of(1.5) * dot::<L, T, Q>(velocity, momentum);
     even[0] = f[0] - weight(0, 1.0) * common;
     for i in (1..Q).step_by(2) {
         let flow = density * along[i];
-        let pressure = (weight(i, 9.0) * flow).times_plus::<FUSED>(along[i], weight(i, 2.0) * common);
+        let pressure = weight(i, 9.0) * flow * along[i] + weight(i, 2.0) * common;
         even[i] = even[i] - pressure;
-        odd[i] = flow.times_plus::<FUSED>(-weight(i, 6.0), odd[i]);
+        odd[i] = odd[i] - weight(i, 6.0) * flow;
     }
     // Half of what the force adds.
     let (mut gained, mut pushed) = ([zero; Q], [zero; Q]);
     if P::FORCE {
-        let (work, force) = (dot::<L, T, FUSED, Q>(velocity, p.force), L::along(p.force));
+        let (work, force) = (dot::<L, T, Q>(velocity, p.force), L::along(p.force));
         gained[0] = -(weight(0, 1.5) * work);
         even[0] += gained[0];
         for i in (1..Q).step_by(2) {
@@ -252,7 +252,7 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
         }
     }
     let [even_rate, odd_rate] = if P::CLOSURE {
-        rates_at(p, closed_tau::<L, T, FUSED, Q>(p, L::second_moment(&even), inverse))
+        rates_at(p, closed_tau::<L, T, Q>(p, L::second_moment(&even), inverse))
     } else {
         [p.even, p.odd]
     };
@@ -283,18 +283,19 @@ pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const FUSED: bool, const
             (false, true) => gained[i],
             (false, false) => zero,
         };
-        after[i] = f[i] - half_even.times_plus::<FUSED>(even[i], against - spared);
-        after[i + 1] = f[i + 1] - half_even.times_plus::<FUSED>(even[i], -(against + spared));
+        let both = if P::GHOSTS || P::FORCE { half_even * even[i] - spared } else { half_even * even[i] };
+        after[i] = f[i] - (both + against);
+        after[i + 1] = f[i + 1] - (both - against);
     }
     after
 }
 
 /// Inner product over the axes of a lattice.
 #[inline(always)]
-fn dot<L: Lattice<Q>, T: Real, const FUSED: bool, const Q: usize>(a: [T; 3], b: [T; 3]) -> T {
+fn dot<L: Lattice<Q>, T: Real, const Q: usize>(a: [T; 3], b: [T; 3]) -> T {
     let mut sum = a[0] * b[0];
     for axis in 1..L::Dim::N {
-        sum = a[axis].times_plus::<FUSED>(b[axis], sum);
+        sum += a[axis] * b[axis];
     }
     sum
 }

@@ -37,8 +37,6 @@ pub trait Real:
     fn double(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// `self * factor + term`, rounded once if `FUSED`.
-    fn times_plus<const FUSED: bool>(self, factor: Self, term: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -54,10 +52,6 @@ impl Real for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    #[inline(always)]
-    fn times_plus<const FUSED: bool>(self, factor: Self, term: Self) -> Self {
-        if FUSED { self.mul_add(factor, term) } else { self * factor + term }
-    }
 }
 
 impl Real for f32 {
@@ -72,9 +66,5 @@ impl Real for f32 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f32::sqrt(self)
-    }
-    #[inline(always)]
-    fn times_plus<const FUSED: bool>(self, factor: Self, term: Self) -> Self {
-        if FUSED { self.mul_add(factor, term) } else { self * factor + term }
     }
 }

@@ -17,10 +17,16 @@ pub fn table(rows: &[Row]) -> String {
             "measured", "reference", "error", "allowed", "", "s"
         );
         for row in block {
+            // A long name has a line of its own.
+            let mut name = row.metric.as_str();
+            if name.chars().count() > 50 {
+                let _ = writeln!(text, "  {name}");
+                name = "";
+            }
             let _ = writeln!(
                 text,
                 "  {:<50} {:>12} {:>12} {:>9} {:>9}  {:<6} {:>6.2}",
-                row.metric,
+                name,
                 number(row.value),
                 number(row.reference),
                 small(row.error),
