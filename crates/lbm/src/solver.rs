@@ -49,6 +49,14 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 setup.operator.magic(tau)
             ),
         });
+        // A flow that a body force drives says nothing of its speed beforehand.
+        let known = |why: String| {
+            if speed > 0.0 {
+                why
+            } else {
+                "no face or obstacle names a speed: set the one expected".to_owned()
+            }
+        };
         let sound = setup.lattice_speed() / 3.0_f64.sqrt();
         let longest = MACH * spacing / (3.0_f64.sqrt() * speed);
         report.bounds.push(Bound {
@@ -57,10 +65,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             allowed: MACH,
             unit: "",
             refuses: true,
-            why: format!(
+            why: known(format!(
                 "largest speed {speed:.4} m/s over that of sound on the lattice; a step of at most {longest:.3e} s keeps \
                  it, and the error falls with the square of the step"
-            ),
+            )),
         });
         let single = setup.operator == Operator::SingleRelaxation && setup.smagorinsky.is_none();
         let allowed = GRID_REYNOLDS[usize::from(!single)];
@@ -70,11 +78,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             allowed,
             unit: "",
             refuses: false,
-            why: format!(
+            why: known(format!(
                 "largest speed times cell over viscosity; cells of {:.3e} m keep it, a closure or another operator \
                  bears more",
                 allowed * viscosity / speed
-            ),
+            )),
         });
     }
 
