@@ -21,8 +21,10 @@
 
 pub mod blocks;
 pub mod dim;
+pub mod exchange;
 pub mod field;
 pub mod observer;
+pub mod quantity;
 pub mod search;
 pub mod simulation;
 pub mod snapshot;
@@ -34,10 +36,12 @@ pub mod units;
 
 pub use blocks::{Blocks, PerBlock};
 pub use dim::{D2, D3, Dim, Linear, Spin, Vector};
+pub use exchange::{Accepts, Coupling, CouplingError, Provides, Quantity};
 pub use field::{FieldRef, FieldSink, Location, Numbers, Shown, ShownAs};
 pub use glam;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
-pub use simulation::{Clock, Ending, RunError, Simulation};
+pub use quantity::{GrainMotion, Grains, Motion, ObstacleMotion};
+pub use simulation::{Clock, Ending, NodeKey, RunError, Simulation};
 pub use snapshot::{Section, SnapshotError, Stored};
 pub use solver::{Bound, Limits, Memory, Solver, StepError, StepLimit, StepRule};
 pub use tensor::SymmetricTensor;

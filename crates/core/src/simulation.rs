@@ -1,8 +1,16 @@
-//! A solver with a clock, and the loop that runs it between outputs.
+//! Solvers with a clock, and the loop that runs them between outputs.
 
+mod nodes;
+#[cfg(test)]
+mod tests;
+
+pub use nodes::NodeKey;
+
+use crate::exchange::{Coupling, CouplingError};
 use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::snapshot::{Section, SnapshotError};
-use crate::solver::{Solver, StepError, check_step};
+use crate::solver::{Limits, Solver, StepError, check_step};
+use nodes::{Graph, Node};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -82,15 +90,20 @@ impl From<ObserverError> for RunError {
     }
 }
 
-/// A solver with its clock.
+/// Solvers with a clock, and the couplings between them.
+///
+/// Several solvers share a long step. Those that are the slow end of a [`Coupling`] take it whole; the
+/// others take it in equal steps, as many as their own limits ask for. The first solver is the one that
+/// observers look at.
 pub struct Simulation {
-    solver: Box<dyn Solver>,
+    graph: Graph,
     clock: Clock,
 }
 
 impl fmt::Debug for Simulation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Simulation").field("solver", &self.solver.name()).field("clock", &self.clock).finish()
+        let names: Vec<&str> = self.graph.nodes.iter().map(|node| node.solver.name()).collect();
+        f.debug_struct("Simulation").field("solvers", &names).field("clock", &self.clock).finish()
     }
 }
 
@@ -98,9 +111,54 @@ impl fmt::Debug for Simulation {
 const ATTENTION: Duration = Duration::from_millis(50);
 
 impl Simulation {
-    /// A simulation at time zero.
+    /// A simulation of one solver at time zero.
     pub fn new(solver: Box<dyn Solver>) -> Self {
-        Self { solver, clock: Clock { start: 0.0, dt: 0.0, steps_in_segment: 0, step: 0 } }
+        Self::named("solver", solver)
+    }
+
+    /// The same with a name for the solver, so that others can be coupled to it; [`Simulation::find`] gives its key.
+    pub fn named(name: impl Into<String>, solver: Box<dyn Solver>) -> Self {
+        let clock = Clock { start: 0.0, dt: 0.0, steps_in_segment: 0, step: 0 };
+        let mut simulation = Self { graph: Graph::default(), clock };
+        simulation.graph.nodes.push(Node::new(name.into(), solver));
+        simulation
+    }
+
+    /// Adds a solver.
+    ///
+    /// # Errors
+    /// When the name is taken.
+    pub fn add<S: Solver>(
+        &mut self,
+        name: impl Into<String>,
+        solver: S,
+    ) -> Result<NodeKey<S>, CouplingError> {
+        let name = name.into();
+        if self.graph.nodes.iter().any(|node| node.name == name) {
+            return Err(CouplingError::new(name, "a solver of this name is there already"));
+        }
+        self.graph.nodes.push(Node::new(name, Box::new(solver)));
+        Ok(NodeKey::new(self.graph.nodes.len() - 1))
+    }
+
+    /// The solver of this name; none when there is none or it is of another type.
+    pub fn find<S: Solver>(&self, name: &str) -> Option<NodeKey<S>> {
+        let index = self.graph.nodes.iter().position(|node| node.name == name)?;
+        let any: &dyn std::any::Any = self.graph.nodes[index].solver.as_ref();
+        any.is::<S>().then(|| NodeKey::new(index))
+    }
+
+    /// Couples two solvers by a law.
+    ///
+    /// # Errors
+    /// When they do not fit, or one is the slow end of one law and the fast end of another.
+    pub fn couple<Slow: Solver, Fast: Solver>(
+        &mut self,
+        slow: NodeKey<Slow>,
+        fast: NodeKey<Fast>,
+        law: impl Coupling<Slow, Fast>,
+    ) -> Result<(), CouplingError> {
+        self.graph.couple(slow, fast, law)
     }
 
     /// The clock.
@@ -108,22 +166,48 @@ impl Simulation {
         &self.clock
     }
 
-    /// The solver.
+    /// The first solver.
     pub fn solver(&self) -> &dyn Solver {
-        self.solver.as_ref()
+        self.graph.nodes[0].solver.as_ref()
     }
 
-    /// The solver, to change it between segments.
+    /// The first solver, to change it between segments.
     pub fn solver_mut(&mut self) -> &mut dyn Solver {
-        self.solver.as_mut()
+        self.graph.nodes[0].solver.as_mut()
+    }
+
+    /// A solver by its key.
+    pub fn get<S: Solver>(&self, key: NodeKey<S>) -> &S {
+        nodes::typed(&self.graph.nodes[key.index])
+    }
+
+    /// A solver by its key, to change it between segments.
+    pub fn get_mut<S: Solver>(&mut self, key: NodeKey<S>) -> &mut S {
+        nodes::typed_mut(&mut self.graph.nodes[key.index])
+    }
+
+    /// Names of all solvers with what they are.
+    pub fn solvers(&self) -> impl Iterator<Item = (&str, &dyn Solver)> {
+        self.graph.nodes.iter().map(|node| (node.name.as_str(), node.solver.as_ref()))
+    }
+
+    /// Sets the longest step \[s\] of a solver that takes several within the long step; from the next segment on.
+    pub fn choose_step<S: Solver>(&mut self, key: NodeKey<S>, dt: f64) {
+        self.graph.nodes[key.index].chosen = Some(dt);
+    }
+
+    /// Limits on the long step, and all bounds.
+    pub fn limits(&self, report: &mut Limits) {
+        self.graph.limits(report);
     }
 
     /// Starts a segment with its own step \[s\]; time goes on from where it is.
     ///
     /// # Errors
-    /// When `dt` is not a positive finite number.
+    /// When `dt` is not a positive finite number, or solvers cannot share it.
     pub fn begin_segment(&mut self, dt: f64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.graph.share(dt)?;
         self.clock = Clock { start: self.clock.time(), dt, steps_in_segment: 0, step: self.clock.step };
         Ok(())
     }
@@ -172,23 +256,21 @@ impl Simulation {
     /// # Errors
     /// When the solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        self.solver.advance(self.clock.dt, steps)?;
+        self.graph.advance(steps)?;
         self.clock.steps_in_segment += steps;
         self.clock.step += steps;
         Ok(())
     }
 
-    /// The sections of clock and solver: all that decides how the run goes on.
+    /// The sections of clock, solvers and couplings: all that decides how the run goes on.
     pub fn save(&self) -> Vec<Section> {
         let mut clock = Section::new("clock");
         clock.put("start and dt", &[self.clock.start, self.clock.dt]);
         clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
-        let mut solver = Section::new("solver");
-        self.solver.save(&mut solver);
-        vec![clock, solver]
+        std::iter::once(clock).chain(self.graph.save()).collect()
     }
 
-    /// Restores clock and solver.
+    /// Restores clock, solvers and couplings.
     ///
     /// # Errors
     /// When a section is missing or does not fit.
@@ -196,8 +278,15 @@ impl Simulation {
         let clock = find_section(sections, "clock")?;
         let times: Vec<f64> = clock.array_of("start and dt", 2)?;
         let steps: Vec<u64> = clock.array_of("steps in segment and run", 2)?;
-        self.solver.restore(find_section(sections, "solver")?)?;
+        self.graph.restore(sections)?;
         self.clock = Clock { start: times[0], dt: times[1], steps_in_segment: steps[0], step: steps[1] };
+        if check_step(self.clock.dt).is_ok() {
+            let shared = self.graph.share(self.clock.dt);
+            shared.map_err(|error| SnapshotError::Damaged {
+                place: "clock/start and dt".to_owned(),
+                found: error.to_string(),
+            })?;
+        }
         Ok(())
     }
 }

@@ -29,6 +29,10 @@ pub trait Solver: Any + Send {
     fn step(&mut self, dt: f64) -> Result<(), StepError> {
         self.advance(dt, 1)
     }
+    /// Brings what the solver lends to others up to date on the host; nothing to do on a CPU.
+    fn publish(&mut self) {}
+    /// Zeroes what couplings add to; only the simulation calls this.
+    fn clear_inputs(&mut self) {}
     /// Where the fields live.
     fn location(&self) -> Location<'_>;
     /// Everything that [`Solver::show`] can show.

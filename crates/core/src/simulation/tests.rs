@@ -1,0 +1,231 @@
+//! How coupled solvers share a step: a tank that leaks into a bucket.
+
+use super::*;
+use crate::exchange::{Accepts, Provides, Quantity};
+use crate::field::{FieldSink, Location, Shown};
+use crate::solver::{Memory, StepLimit, StepRule};
+
+/// Water over the brim \[m\].
+struct Level;
+
+impl Quantity for Level {
+    const NAME: &'static str = "level";
+    const UNIT: &'static str = "m";
+    type View<'a> = f64;
+    type ViewMut<'a> = &'a mut f64;
+}
+
+/// Decays towards its input; keeps the steps it took.
+struct Vessel {
+    level: f64,
+    input: f64,
+    limit: Option<(f64, StepRule)>,
+    taken: Vec<f64>,
+}
+
+impl Vessel {
+    fn new(level: f64, limit: Option<(f64, StepRule)>) -> Self {
+        Self { level, input: 0.0, limit, taken: Vec::new() }
+    }
+}
+
+impl Provides<Level> for Vessel {
+    fn view(&self) -> f64 {
+        self.level
+    }
+}
+
+impl Accepts<Level> for Vessel {
+    fn view_mut(&mut self) -> &mut f64 {
+        &mut self.input
+    }
+}
+
+impl Solver for Vessel {
+    fn name(&self) -> &'static str {
+        "vessel"
+    }
+    fn size(&self) -> (usize, &'static str) {
+        (1, "vessel")
+    }
+    fn limits(&self, report: &mut Limits) {
+        if let Some((dt, rule)) = self.limit {
+            report.steps.push(StepLimit { name: "leak", dt, rule, why: "of the test".to_owned() });
+        }
+    }
+    fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        for _ in 0..steps {
+            self.level += dt * (self.input - self.level);
+            self.taken.push(dt);
+        }
+        Ok(())
+    }
+    fn clear_inputs(&mut self) {
+        self.input = 0.0;
+    }
+    fn location(&self) -> Location<'_> {
+        Location::Points(crate::field::FieldRef::Vector2(&[]))
+    }
+    fn shown(&self) -> Vec<Shown> {
+        Vec::new()
+    }
+    fn show(&self, _: &mut dyn FieldSink) {}
+    fn save(&self, to: &mut Section) {
+        to.put("level and input", &[self.level, self.input]);
+    }
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        let values: Vec<f64> = from.array_of("level and input", 2)?;
+        (self.level, self.input) = (values[0], values[1]);
+        Ok(())
+    }
+    fn memory(&self) -> Memory {
+        Memory::default()
+    }
+}
+
+/// Adds the level of each to the input of the other; keeps how much went forward.
+#[derive(Default)]
+struct Pipe {
+    moved: f64,
+}
+
+impl<A: Accepts<Level> + Provides<Level>, B: Accepts<Level> + Provides<Level>> Coupling<A, B> for Pipe {
+    fn name(&self) -> &'static str {
+        "pipe"
+    }
+    fn attach(&mut self, _: &mut A, fast: &mut B) -> Result<(), CouplingError> {
+        let below_brim = fast.view() < 100.0;
+        below_brim.then_some(()).ok_or_else(|| CouplingError::new("pipe", "the vessel is full"))
+    }
+    fn forward(&mut self, fast: &B, slow: &mut A) -> Result<(), StepError> {
+        *slow.view_mut() += fast.view();
+        self.moved += fast.view();
+        Ok(())
+    }
+    fn backward(&mut self, slow: &A, fast: &mut B) -> Result<(), StepError> {
+        *fast.view_mut() += slow.view();
+        Ok(())
+    }
+    fn limits(&self, _: &A, _: &B, report: &mut Limits) {
+        let why = "of the pipe".to_owned();
+        report.steps.push(StepLimit { name: "pipe", dt: 0.5, rule: StepRule::AtMost, why });
+    }
+    fn save(&self, to: &mut Section) {
+        to.put_one("moved", self.moved);
+    }
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        self.moved = from.one("moved")?;
+        Ok(())
+    }
+}
+
+const FAST: Option<(f64, StepRule)> = Some((0.03, StepRule::AtMost));
+
+type Pair = (Simulation, NodeKey<Vessel>, NodeKey<Vessel>);
+
+fn pair(slow: Option<(f64, StepRule)>, fast: Option<(f64, StepRule)>) -> Pair {
+    let mut simulation = Simulation::named("tank", Box::new(Vessel::new(1.0, slow)));
+    let tank = simulation.find::<Vessel>("tank").expect("it was named");
+    let bucket = simulation.add("bucket", Vessel::new(0.5, fast)).unwrap();
+    simulation.couple(tank, bucket, Pipe::default()).unwrap();
+    (simulation, tank, bucket)
+}
+
+#[test]
+fn the_fast_solver_takes_equal_steps_within_the_slow_one() {
+    let (mut simulation, tank, bucket) = pair(Some((0.1, StepRule::AtMost)), FAST);
+    simulation.begin_segment(0.1).unwrap();
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.get(tank).taken, [0.1]);
+    assert_eq!(simulation.get(bucket).taken, [0.025; 4]);
+    // The tank saw the bucket before its step, the bucket saw the tank after it.
+    let level = 1.0 + 0.1 * (0.5 - 1.0);
+    assert_eq!(simulation.get(tank).level, level);
+    assert_eq!(simulation.get(bucket).input, level);
+    assert_eq!(simulation.clock().step(), 1);
+    simulation.choose_step(bucket, 0.01);
+    simulation.begin_segment(0.1).unwrap();
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.get(bucket).taken[4..], [0.01; 10]);
+}
+
+#[test]
+fn laws_add_to_inputs_that_are_cleared_before() {
+    let (mut simulation, tank, bucket) = pair(None, FAST);
+    simulation.couple(tank, bucket, Pipe::default()).unwrap();
+    simulation.begin_segment(0.06).unwrap();
+    simulation.advance(3).unwrap();
+    let before = simulation.get(bucket).level;
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.get(tank).input, 2.0 * before);
+}
+
+#[test]
+fn steps_that_do_not_fit_are_refused_with_both_named() {
+    let exactly = |dt| Some((dt, StepRule::Exactly));
+    let (mut simulation, ..) = pair(exactly(0.1), exactly(0.03));
+    let error = simulation.begin_segment(0.1).unwrap_err().to_string();
+    assert!(error.contains("`bucket`") && error.contains("3e-2"), "{error}");
+    let error = simulation.begin_segment(0.06).unwrap_err().to_string();
+    assert!(error.contains("`tank`") && error.contains("leak"), "{error}");
+    let (mut simulation, _, bucket) = pair(exactly(0.09), exactly(0.03));
+    simulation.begin_segment(0.09).unwrap();
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.get(bucket).taken, [0.03; 3]);
+    let (mut simulation, ..) = pair(None, Some((1e-9, StepRule::AtMost)));
+    let error = simulation.begin_segment(0.1).unwrap_err().to_string();
+    assert!(error.contains("`bucket`") && error.contains("leak"), "{error}");
+}
+
+#[test]
+fn a_solver_is_slow_to_all_or_fast_to_all() {
+    let (mut simulation, tank, bucket) = pair(None, FAST);
+    let error = simulation.couple(bucket, tank, Pipe::default()).unwrap_err();
+    assert_eq!(error.place, "bucket");
+    let full = simulation.add("full", Vessel::new(200.0, None)).unwrap();
+    let error = simulation.couple(tank, full, Pipe::default()).unwrap_err();
+    assert_eq!(error.reason, "the vessel is full");
+    // What was refused is as free as before.
+    assert!(simulation.couple(full, bucket, Pipe::default()).is_ok());
+    assert!(simulation.add("full", Vessel::new(0.0, None)).is_err());
+    assert!(simulation.find::<Vessel>("none").is_none());
+}
+
+#[test]
+fn limits_of_the_long_step_leave_out_fast_solvers() {
+    let (simulation, ..) = pair(Some((0.1, StepRule::AtMost)), FAST);
+    let mut limits = Limits::default();
+    simulation.limits(&mut limits);
+    let found: Vec<(&str, f64)> = limits.steps.iter().map(|limit| (limit.name, limit.dt)).collect();
+    assert_eq!(found, [("leak", 0.1), ("pipe", 0.5)]);
+}
+
+#[test]
+fn a_restart_takes_up_solvers_and_couplings() {
+    let build = || pair(Some((0.1, StepRule::AtMost)), FAST).0;
+    let bytes = |simulation: &Simulation| {
+        let entries = |section: &Section| {
+            section.entries().map(|(name, bytes)| (name.to_owned(), bytes.to_vec())).collect::<Vec<_>>()
+        };
+        simulation
+            .save()
+            .iter()
+            .map(|section| (section.name().to_owned(), entries(section)))
+            .collect::<Vec<_>>()
+    };
+    let mut whole = build();
+    whole.begin_segment(0.1).unwrap();
+    whole.advance(3).unwrap();
+    let saved = whole.save();
+    let mut second = build();
+    second.restore(&saved).unwrap();
+    assert_eq!(bytes(&second), bytes(&whole));
+    for simulation in [&mut whole, &mut second] {
+        simulation.advance(4).unwrap();
+    }
+    assert_eq!(bytes(&second), bytes(&whole));
+    let names: Vec<String> = bytes(&whole).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["clock", "solver tank", "solver bucket", "coupling 0 pipe"]);
+    let missing = second.restore(&saved[..3]).unwrap_err().to_string();
+    assert!(missing.contains("coupling 0 pipe"), "{missing}");
+}
