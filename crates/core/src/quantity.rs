@@ -5,7 +5,7 @@ use crate::exchange::Quantity;
 use std::marker::PhantomData;
 
 /// How a rigid body moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Motion<D: Dim> {
     /// Centre \[m\].
     pub position: D::Vec,
@@ -13,6 +13,12 @@ pub struct Motion<D: Dim> {
     pub velocity: D::Vec,
     /// Angular velocity \[rad/s\].
     pub spin: D::Spin,
+}
+
+impl<D: Dim> PartialEq for Motion<D> {
+    fn eq(&self, other: &Self) -> bool {
+        self.position == other.position && self.velocity == other.velocity && self.spin == other.spin
+    }
 }
 
 impl<D: Dim> Motion<D> {

@@ -2,14 +2,12 @@
 
 use crate::lattice::{Lattice, opposite};
 use crate::links::{Copies, Cut, Cuts, Port};
+use crate::obstacle::{Cover, Domain, cell_index, cells_of};
 use crate::open::{Known, OpenFace, dot};
 use crate::populations::Grid;
 use crate::real::Real;
-use crate::setup::{Face, Obstacle, Setup, SetupError};
+use crate::setup::{Face, Setup};
 use granular_core::{Dim, Vector};
-
-/// Number of the obstacle that covers a cell, from 1; 0 is fluid. Empty without obstacles.
-pub(crate) type Cover = Vec<u16>;
 
 /// What lies beyond the fluid.
 pub(crate) struct Beyond<T> {
@@ -19,7 +17,7 @@ pub(crate) struct Beyond<T> {
 }
 
 /// What a cell next to another one is.
-enum Neighbour {
+pub(crate) enum Neighbour {
     /// Fluid inside the domain.
     Fluid,
     /// Fluid on the other side of a periodic face.
@@ -37,117 +35,65 @@ enum Neighbour {
 /// Builds the lists of a flow.
 pub(crate) struct Builder<'a, L: Lattice<Q>, const Q: usize> {
     setup: &'a Setup<L::Dim>,
+    domain: Domain<L::Dim>,
+    /// Displacements of each obstacle and its periodic images.
+    images: Vec<Vec<<L::Dim as Dim>::Vec>>,
     grid: &'a Grid,
     cover: &'a Cover,
 }
 
-/// Index of a cell among all of the domain.
-pub(crate) fn cell_index([nx, ny, _]: [usize; 3], [x, y, z]: [usize; 3]) -> usize {
-    (z * ny + y) * nx + x
-}
-
-/// Centre of a cell \[m\]; coordinates may lie beyond the domain.
-pub(crate) fn centre_of<D: Dim>(setup: &Setup<D>, cell: [i64; 3]) -> D::Vec {
-    let mut centre = setup.origin;
-    for (axis, &at) in cell.iter().enumerate().take(D::N) {
-        centre += D::Vec::along(axis, (at as f64 + 0.5) * setup.spacing);
-    }
-    centre
-}
-
-/// All cells of a box, x fastest.
-pub(crate) fn cells_of(low: [usize; 3], high: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-    (low[2]..high[2])
-        .flat_map(move |z| (low[1]..high[1]).flat_map(move |y| (low[0]..high[0]).map(move |x| [x, y, z])))
-}
-
-/// Cells of a box around an obstacle, `margin` cells wider, cut to the domain.
-fn near<D: Dim>(setup: &Setup<D>, obstacle: &Obstacle<D>, margin: f64) -> [[usize; 3]; 2] {
-    let (low, high) = obstacle.shape.bounds();
-    let mut ranges = [[0; 3], setup.cells];
-    for axis in 0..D::N {
-        let at = |corner: D::Vec| (corner.component(axis) - setup.origin.component(axis)) / setup.spacing;
-        let last = setup.cells[axis] as f64;
-        ranges[0][axis] = (at(low) - 1.0 - margin).floor().clamp(0.0, last) as usize;
-        ranges[1][axis] = (at(high) + 1.0 + margin).ceil().clamp(0.0, last) as usize;
-    }
-    ranges
-}
-
-/// Marks the cells whose centres obstacles contain; the first obstacle keeps a cell.
-pub(crate) fn cover<D: Dim>(setup: &Setup<D>) -> Result<Cover, SetupError> {
-    if setup.obstacles.is_empty() {
-        return Ok(Vec::new());
-    }
-    let mut cover = vec![0; setup.cells.iter().product()];
-    for (number, obstacle) in setup.obstacles.iter().enumerate() {
-        let number = u16::try_from(number + 1).map_err(|_| {
-            SetupError::new("obstacles", format!("{} bodies", setup.obstacles.len()), "at most 65535")
-        })?;
-        let [low, high] = near(setup, obstacle, 0.0);
-        for cell in cells_of(low, high) {
-            let at = cell_index(setup.cells, cell);
-            if cover[at] == 0 && obstacle.shape.contains(centre_of(setup, cell.map(|x| x as i64))) {
-                cover[at] = number;
-            }
-        }
-    }
-    if cover.iter().all(|number| *number != 0) {
-        return Err(SetupError::new(
-            "fluid",
-            "covered by obstacles everywhere".to_owned(),
-            "some cells free",
-        ));
-    }
-    Ok(cover)
+/// The cell next to another one along a direction.
+fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
+    std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]))
 }
 
 impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
     pub(crate) fn new(setup: &'a Setup<L::Dim>, grid: &'a Grid, cover: &'a Cover) -> Self {
-        Self { setup, grid, cover }
+        let domain = Domain::of(setup);
+        let images = setup.obstacles.iter().map(|obstacle| domain.images(obstacle, 2.0)).collect();
+        Self { setup, domain, images, grid, cover }
     }
 
     pub(crate) fn build<T: Real>(&self) -> Beyond<T> {
-        let mut copies = Copies::new();
-        let mut cuts = vec![Vec::new(); self.setup.obstacles.len()];
-        for cell in self.candidates() {
-            if !self.is_fluid(cell) {
-                continue;
-            }
-            for direction in 1..Q {
-                self.link(&mut copies, &mut cuts, cell, direction);
-            }
-        }
-        let obstacles = cuts.iter().map(|cuts| Cuts::new::<L, Q>(self.grid, cuts)).collect();
-        Beyond { copies, obstacles, open: self.open_faces() }
+        Beyond { copies: self.copies(), obstacles: self.obstacles(), open: self.open_faces() }
     }
 
-    /// Cells that may have a neighbour beyond the fluid: those at faces, then those near obstacles.
-    fn candidates(&self) -> Vec<[usize; 3]> {
-        let cells = self.setup.cells;
-        let axes = L::Dim::N;
-        let is_at_face =
-            move |cell: [usize; 3]| (0..axes).any(|axis| cell[axis] == 0 || cell[axis] + 1 == cells[axis]);
-        let mut found = Vec::new();
-        for row in cells_of([0; 3], [1, cells[1], cells[2]]) {
-            if (1..axes).any(|axis| row[axis] == 0 || row[axis] + 1 == cells[axis]) {
-                found.extend((0..cells[0]).map(|x| [x, row[1], row[2]]));
-            } else {
-                found.extend([row, [cells[0] - 1, row[1], row[2]]]);
-            }
+    /// Links of cells at faces to what is no obstacle.
+    pub(crate) fn copies<T: Real>(&self) -> Copies<T> {
+        let mut copies = Copies::new();
+        for cell in self.cells_at_faces().filter(|cell| self.is_fluid(*cell)) {
+            (1..Q).for_each(|direction| self.copy(&mut copies, cell, direction));
         }
-        let mut listed = vec![false; self.cover.len()];
-        for obstacle in &self.setup.obstacles {
-            let [low, high] = near(self.setup, obstacle, 2.0);
-            for cell in cells_of(low, high) {
-                let at = cell_index(cells, cell);
-                if !listed[at] && !is_at_face(cell) {
-                    listed[at] = true;
-                    found.push(cell);
-                }
-            }
-        }
-        found
+        copies
+    }
+
+    /// Links that obstacles cut.
+    pub(crate) fn obstacles<T: Real>(&self) -> Vec<Cuts<T>> {
+        (0..self.setup.obstacles.len())
+            .map(|number| {
+                let cuts: Vec<Cut> = (0..self.images[number].len())
+                    .flat_map(|image| self.near(number, image).map(move |cell| (image, cell)))
+                    .flat_map(|(image, cell)| (1..Q).map(move |direction| (image, cell, direction)))
+                    .filter_map(|(image, cell, direction)| self.cut(cell, direction, number, image))
+                    .collect();
+                Cuts::new::<L, Q>(self.grid, &cuts)
+            })
+            .collect()
+    }
+
+    /// Fluid cells from which links may reach an image of an obstacle.
+    fn near(&self, number: usize, image: usize) -> impl Iterator<Item = [usize; 3]> {
+        let range = self.domain.near(&self.setup.obstacles[number], self.images[number][image], 2.0);
+        cells_of(range).filter(|cell| self.is_fluid(*cell))
+    }
+
+    fn cells_at_faces(&self) -> impl Iterator<Item = [usize; 3]> {
+        let (cells, axes) = (self.setup.cells, L::Dim::N);
+        cells_of([[0; 3], [1, cells[1], cells[2]]]).flat_map(move |row| {
+            let is_at_face = (1..axes).any(|axis| row[axis] == 0 || row[axis] + 1 == cells[axis]);
+            let step = if is_at_face { 1 } else { cells[0] - 1 };
+            (0..cells[0]).step_by(step).map(move |x| [x, row[1], row[2]])
+        })
     }
 
     fn is_fluid(&self, cell: [usize; 3]) -> bool {
@@ -160,7 +106,7 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         (number as usize).checked_sub(1)
     }
 
-    fn neighbour(&self, cell: [i64; 3]) -> Neighbour {
+    pub(crate) fn neighbour(&self, cell: [i64; 3]) -> Neighbour {
         let mut wrapped = cell;
         let (mut wall, mut mirror, mut is_open): (Option<[f64; 3]>, _, _) = (None, [false; 3], false);
         for axis in 0..L::Dim::N {
@@ -194,22 +140,15 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         }
     }
 
-    fn link<T: Real>(
-        &self,
-        copies: &mut Copies<T>,
-        cuts: &mut [Vec<Cut>],
-        cell: [usize; 3],
-        direction: usize,
-    ) {
+    fn copy<T: Real>(&self, copies: &mut Copies<T>, cell: [usize; 3], direction: usize) {
         let cell = cell.map(|x| x as i64);
         let velocity = L::VELOCITIES[direction];
-        let beyond: [i64; 3] = std::array::from_fn(|axis| cell[axis] + i64::from(velocity[axis]));
         let back = opposite(direction);
         let here = self.grid.place(cell);
         let to = Port { place: here, direction: back };
         let bounced = Port { place: here, direction };
-        match self.neighbour(beyond) {
-            Neighbour::Fluid | Neighbour::Open => {}
+        match self.neighbour(beyond::<L, Q>(cell, direction)) {
+            Neighbour::Fluid | Neighbour::Open | Neighbour::Solid(_) => {}
             Neighbour::Wrapped(image) => {
                 let from = Port { place: self.grid.place(image), direction: back };
                 copies.push::<L, Q>(self.grid, to, from, 0.0);
@@ -222,7 +161,6 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
                 let from = self.mirrored(cell, direction, mirror).unwrap_or(bounced);
                 copies.push::<L, Q>(self.grid, to, from, 0.0);
             }
-            Neighbour::Solid(obstacle) => cuts[obstacle].push(self.cut(cell, direction, obstacle)),
         }
     }
 
@@ -241,34 +179,36 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         }
     }
 
-    fn cut(&self, cell: [i64; 3], direction: usize, number: usize) -> Cut {
-        let setup = self.setup;
-        let obstacle = &setup.obstacles[number];
-        let velocity = L::VELOCITIES[direction];
-        // The obstacle may be met through a periodic face: look from its side.
-        let beyond: [i64; 3] = std::array::from_fn(|axis| {
-            let at = cell[axis] + i64::from(velocity[axis]);
-            at.rem_euclid(setup.cells[axis] as i64)
-        });
-        let outside = std::array::from_fn(|axis| beyond[axis] - i64::from(velocity[axis]));
-        let (outside, inside) = (centre_of(setup, outside), centre_of(setup, beyond));
+    /// The link of a cell along `direction` when this image of this obstacle cuts it.
+    fn cut(&self, cell: [usize; 3], direction: usize, number: usize, image: usize) -> Option<Cut> {
+        let cell = cell.map(|x| x as i64);
+        let neighbour = beyond::<L, Q>(cell, direction);
+        if !matches!(self.neighbour(neighbour), Neighbour::Solid(found) if found == number) {
+            return None;
+        }
+        let (setup, obstacle, images) = (self.setup, &self.setup.obstacles[number], &self.images[number]);
+        let (outside, inside) = (self.domain.centre(cell), self.domain.centre(neighbour));
+        // Images that overlap share the cells near them: the first one has the link.
+        if images.iter().position(|image| obstacle.shape.contains(inside - *image)) != Some(image) {
+            return None;
+        }
+        let (outside, inside) = (outside - images[image], inside - images[image]);
         let q = obstacle.shape.crossing(outside, inside);
         let arm = outside + (inside - outside) * q - obstacle.shape.centre();
-        let wall = obstacle.velocity + <L::Dim as Dim>::turn(obstacle.spin, arm);
-        let wall = wall.padded().map(|c| c / setup.lattice_speed());
-        let behind: [i64; 3] = std::array::from_fn(|axis| cell[axis] - i64::from(velocity[axis]));
+        let wall = obstacle.velocity_at(arm).padded().map(|c| c / setup.lattice_speed());
+        let behind = beyond::<L, Q>(cell, opposite(direction));
         let has_cell_behind = matches!(self.neighbour(behind), Neighbour::Fluid);
         let motion = obstacle.wall.motion(q, has_cell_behind);
-        Cut {
+        Some(Cut {
             port: Port { place: self.grid.place(cell), direction },
             weights: obstacle.wall.weights(q, has_cell_behind),
-            added: -6.0 * L::WEIGHTS[direction] * motion * dot(velocity, wall),
+            added: -6.0 * L::WEIGHTS[direction] * motion * dot(L::VELOCITIES[direction], wall),
             arm: arm.padded().map(|c| c / setup.spacing),
             velocity: wall,
-        }
+        })
     }
 
-    fn open_faces(&self) -> Vec<OpenFace> {
+    pub(crate) fn open_faces(&self) -> Vec<OpenFace> {
         let setup = self.setup;
         let mut found = Vec::new();
         for axis in 0..L::Dim::N {
@@ -281,12 +221,12 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
                 let (mut low, mut high) = ([0; 3], setup.cells);
                 low[axis] = if side == 0 { 0 } else { setup.cells[axis] - 1 };
                 high[axis] = low[axis] + 1;
-                let cells = cells_of(low, high).filter(|cell| self.is_fluid(*cell)).map(|cell| {
+                let cells = cells_of([low, high]).filter(|cell| self.is_fluid(*cell)).map(|cell| {
                     let cell = cell.map(|x| x as i64);
                     let place = self.grid.place(cell);
                     match face {
                         Face::Velocity(profile, _) => {
-                            let velocity = (profile.0)(centre_of(setup, cell)).padded();
+                            let velocity = (profile.0)(self.domain.centre(cell)).padded();
                             (place, velocity.map(|c| c / setup.lattice_speed()), 0.0)
                         }
                         Face::Pressure(pressure, _) => (place, [0.0; 3], setup.density_excess(*pressure)),

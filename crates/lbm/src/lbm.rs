@@ -1,14 +1,15 @@
 //! The solver.
 
-use crate::boundary::{Beyond, Builder, Cover, cell_index, centre_of, cover};
+use crate::boundary::{Beyond, Builder};
 use crate::collision::{Parameters, Parts, Physics, With};
 use crate::lattice::Lattice;
+use crate::obstacle::{Cover, Domain, cell_index, cells_of, cover};
 use crate::open::{dot, equilibrium, moments};
 use crate::populations::{Grid, Populations, Runs};
 use crate::real::Real;
 use crate::setup::{Setup, SetupError};
 use granular_core::solver::check_step;
-use granular_core::{Dim, StepError, Vector};
+use granular_core::{Dim, Motion, StepError, Vector};
 
 /// Largest population at rest, without its weight, that still means something: its density would
 /// be twice that at rest.
@@ -22,6 +23,9 @@ pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
     pub(crate) populations: Populations<T>,
     pub(crate) runs: Runs,
     pub(crate) cover: Cover,
+    /// Motion lent to the obstacles, and whether it was looked at since the last step.
+    pub(crate) motions: Vec<Motion<L::Dim>>,
+    pub(crate) may_have_moved: bool,
     pub(crate) beyond: Beyond<T>,
     pub(crate) physics: Physics,
     parameters: Parameters<T>,
@@ -77,6 +81,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             fluid_cells: setup.cells.iter().product::<usize>() - solid,
             runs,
             cover,
+            motions: setup.obstacles.iter().map(|obstacle| obstacle.motion()).collect(),
+            may_have_moved: false,
             beyond,
             parameters: physics.parameters::<L, T, Q>(),
             step: step_function::<L, T, Q>(&physics),
@@ -95,7 +101,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
 
     /// Places of all fluid cells in a plane and their coordinates, x fastest.
     pub(crate) fn fluid(&self) -> impl Iterator<Item = ([usize; 3], usize)> + '_ {
-        crate::boundary::cells_of([0; 3], self.setup.cells)
+        cells_of([[0; 3], self.setup.cells])
             .filter(|cell| self.is_fluid(*cell))
             .map(|cell| (cell, self.populations.grid.place(cell.map(|x| x as i64))))
     }
@@ -111,7 +117,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let lattice_velocity = |at| flow(at).velocity.padded().map(|c| c / speed);
         let cells: Vec<_> = self.fluid().collect();
         for (cell, place) in cells {
-            let centre = centre_of(&self.setup, cell.map(|x| x as i64));
+            let centre = Domain::of(&self.setup).centre(cell.map(|x| x as i64));
             let excess = self.setup.density_excess(flow(centre).pressure);
             let mut gradient = [[0.0; 3]; 3];
             for (axis, row) in gradient.iter_mut().enumerate().take(L::Dim::N) {
@@ -151,6 +157,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             let why = format!("the lattice has a step of {:e} s", self.setup.time_step);
             return Err(StepError::Step { dt, why });
         }
+        self.meet_moved_obstacles()?;
         for _ in 0..steps {
             let is_beyond = (self.step)(&mut self.populations, &self.runs, &self.parameters, T::of(BEYOND));
             self.apply_boundaries();
@@ -208,7 +215,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
 
     /// Centre of a cell \[m\].
     pub fn centre(&self, cell: [usize; 3]) -> <L::Dim as Dim>::Vec {
-        centre_of(&self.setup, cell.map(|x| x as i64))
+        Domain::of(&self.setup).centre(cell.map(|x| x as i64))
     }
 
     /// Force \[N, per metre of depth in the plane\] of the fluid on an obstacle in the last step, by the number of the obstacle.

@@ -37,7 +37,7 @@
 //! | [`Obstacle`] | any [`Shape`]; half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
 //!
-//! Limits: obstacles do not move from their place; open faces along one axis. A sudden start between
+//! Obstacles move when a motion is lent to the fluid (`Accepts<ObstacleMotion>`), as by a coupling. A sudden start between
 //! pressures leaves a momentum of alternating sign from cell to cell and step to step that nothing damps
 //! (3/2 of the pressure drop per cell, in lattice units): start from the pressure at rest with
 //! [`Lbm::set_flow`], or take the mean over two steps.
@@ -51,6 +51,8 @@ mod kernel;
 mod lattice;
 mod lbm;
 mod links;
+mod moving;
+mod obstacle;
 mod open;
 mod pages;
 mod populations;
@@ -64,9 +66,10 @@ pub use collision::{OddRate, Operator};
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
 pub use links::WallScheme;
+pub use obstacle::Obstacle;
 pub use open::OpenScheme;
 pub use real::Real;
-pub use setup::{Face, Obstacle, Profile, Setup, SetupError};
+pub use setup::{Face, Profile, Setup, SetupError};
 pub use shape::{Ball, Block, Polygon, Shape};
 
 /// A fluid in the plane, per metre of depth.

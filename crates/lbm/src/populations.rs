@@ -117,20 +117,50 @@ impl Runs {
         let mut found = Self { starts: vec![0], runs: Vec::new() };
         for row in 0..rows {
             let (y, z) = (row % (ny + 2), row / (ny + 2));
-            let mut x = 0;
-            while y < ny && x < nx {
-                let start = x;
-                while x < nx && is_fluid([x, y, z]) {
-                    x += 1;
-                }
-                if x > start {
-                    found.runs.push([start as u32, x as u32]);
-                }
-                x += 1;
+            if y < ny {
+                found.add_row(nx, |x| is_fluid([x, y, z]));
             }
             found.starts.push(found.runs.len() as u32);
         }
         found
+    }
+
+    /// Finds the runs of the rows of a box of cells again.
+    pub(crate) fn refresh(
+        &mut self,
+        grid: &Grid,
+        range: [[usize; 3]; 2],
+        is_fluid: impl Fn([usize; 3]) -> bool,
+    ) {
+        let [low, high] = range;
+        let layer = grid.cells[1] + 2;
+        let mut fresh =
+            Self { starts: Vec::with_capacity(self.starts.len()), runs: Vec::with_capacity(self.runs.len()) };
+        fresh.starts.push(0);
+        for row in 0..self.rows() {
+            let (y, z) = (row % layer, row / layer);
+            if (low[1]..high[1]).contains(&y) && (low[2]..high[2]).contains(&z) {
+                fresh.add_row(grid.cells[0], |x| is_fluid([x, y, z]));
+            } else {
+                fresh.runs.extend(self.of_row(row));
+            }
+            fresh.starts.push(fresh.runs.len() as u32);
+        }
+        *self = fresh;
+    }
+
+    fn add_row(&mut self, cells: usize, is_fluid: impl Fn(usize) -> bool) {
+        let mut x = 0;
+        while x < cells {
+            let start = x;
+            while x < cells && is_fluid(x) {
+                x += 1;
+            }
+            if x > start {
+                self.runs.push([start as u32, x as u32]);
+            }
+            x += 1;
+        }
     }
 
     fn rows(&self) -> usize {

@@ -1,9 +1,8 @@
 //! What a flow is made of, in physical units.
 
 use crate::collision::Operator;
-use crate::links::WallScheme;
+use crate::obstacle::Obstacle;
 use crate::open::OpenScheme;
-use crate::shape::Shape;
 use granular_core::{Dim, Linear, Vector};
 use std::fmt;
 use std::sync::Arc;
@@ -83,40 +82,6 @@ impl<D: Dim> Profile<D> {
     /// The same velocity everywhere.
     pub fn uniform(velocity: D::Vec) -> Self {
         Self::new(move |_| velocity)
-    }
-}
-
-/// A body in the fluid, on which force and torque are measured.
-#[derive(Clone)]
-pub struct Obstacle<D: Dim> {
-    /// Name, for `force_on_<name>_x`.
-    pub name: String,
-    /// Shape.
-    pub shape: Arc<dyn Shape<D>>,
-    /// How its surface is met.
-    pub wall: WallScheme,
-    /// Velocity of its surface \[m/s\], about which it does not move.
-    pub velocity: D::Vec,
-    /// Rate of turning of its surface \[1/s\].
-    pub spin: D::Spin,
-}
-
-impl<D: Dim> Obstacle<D> {
-    /// A body at rest with interpolated wall.
-    pub fn new(name: impl Into<String>, shape: impl Shape<D> + 'static) -> Self {
-        Self {
-            name: name.into(),
-            shape: Arc::new(shape),
-            wall: WallScheme::default(),
-            velocity: D::Vec::ZERO,
-            spin: D::Spin::ZERO,
-        }
-    }
-}
-
-impl<D: Dim> fmt::Debug for Obstacle<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Obstacle").field("name", &self.name).field("wall", &self.wall).finish_non_exhaustive()
     }
 }
 

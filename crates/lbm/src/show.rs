@@ -1,8 +1,8 @@
 //! What the fluid shows: fields and numbers, computed when something asks for them.
 
-use crate::boundary::cell_index;
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
+use crate::obstacle::cell_index;
 use crate::real::Real;
 use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, Vector};
 

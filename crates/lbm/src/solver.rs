@@ -7,7 +7,7 @@ use crate::real::Real;
 use crate::setup::{Face, Setup};
 use crate::{Operator, show};
 use granular_core::{
-    Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Section, Shown, SnapshotError, Solver,
+    Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Motion, Section, Shown, SnapshotError, Solver,
     StepError, StepLimit, StepRule, Vector,
 };
 
@@ -108,6 +108,23 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 }
 
+impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
+    fn saved_motions(&self, from: &Section) -> Result<Vec<Motion<L::Dim>>, SnapshotError> {
+        let count = self.setup.obstacles.len();
+        let positions: Vec<<L::Dim as Dim>::Vec> = from.array_of("positions of obstacles", count)?;
+        let velocities: Vec<<L::Dim as Dim>::Vec> = from.array_of("velocities of obstacles", count)?;
+        let spins: Vec<<L::Dim as Dim>::Spin> = from.array_of("spins of obstacles", count)?;
+        let motions = positions.into_iter().zip(velocities).zip(spins);
+        let motions = motions.map(|((position, velocity), spin)| Motion { position, velocity, spin });
+        let motions: Vec<_> = motions.collect();
+        if motions.iter().all(Motion::is_finite) {
+            return Ok(motions);
+        }
+        let found = "a number that is not finite".to_owned();
+        Err(SnapshotError::Damaged { place: "solver/positions of obstacles".to_owned(), found })
+    }
+}
+
 impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
     fn name(&self) -> &'static str {
         "lattice Boltzmann"
@@ -161,6 +178,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             })
             .collect();
         to.put("force and torque on obstacles", &loads);
+        let motions = || self.setup.obstacles.iter().map(|obstacle| obstacle.motion());
+        to.put("positions of obstacles", &motions().map(|motion| motion.position).collect::<Vec<_>>());
+        to.put("velocities of obstacles", &motions().map(|motion| motion.velocity).collect::<Vec<_>>());
+        to.put("spins of obstacles", &motions().map(|motion| motion.spin).collect::<Vec<_>>());
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -171,6 +192,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         }
         let steps = from.one("steps")?;
         let acceleration: <L::Dim as Dim>::Vec = from.one("acceleration")?;
+        let motions = self.saved_motions(from)?;
+        self.place_obstacles(motions);
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;

@@ -1,0 +1,183 @@
+//! Obstacles that move: cells are covered and uncovered, and links found again.
+//!
+//! An uncovered cell gets the equilibrium at the mean density of the fluid cells around it and the velocity of the body
+//! that left it, and their mean deviation from equilibrium \[Caiazzo2008\]. What a body covers is lost, what it
+//! uncovers is new: mass is kept on average only.
+
+use crate::boundary::{Builder, Neighbour};
+use crate::lattice::Lattice;
+use crate::lbm::Lbm;
+use crate::obstacle::{Domain, Range, cell_index, cells_of};
+use crate::open::equilibrium;
+use crate::real::Real;
+use granular_core::{Accepts, Dim, Linear, Motion, ObstacleMotion, Provides, Solver, StepError, Vector};
+
+/// Fastest motion of a surface \[cells per step\]: the speed of sound.
+const FASTEST: f64 = 0.577;
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<ObstacleMotion<L::Dim>> for Lbm<L, Q, T> {
+    fn view(&self) -> &[Motion<L::Dim>] {
+        &self.motions
+    }
+}
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Accepts<ObstacleMotion<L::Dim>> for Lbm<L, Q, T> {
+    fn view_mut(&mut self) -> &mut [Motion<L::Dim>] {
+        self.may_have_moved = true;
+        &mut self.motions
+    }
+}
+
+/// A cell that a body left.
+pub(crate) struct Uncovered<D: Dim> {
+    cell: [usize; 3],
+    /// Velocity of the body there \[m/s\].
+    velocity: D::Vec,
+}
+
+impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
+    /// Takes up the motion lent to the obstacles since the last step.
+    pub(crate) fn meet_moved_obstacles(&mut self) -> Result<(), StepError> {
+        if !std::mem::take(&mut self.may_have_moved) {
+            return Ok(());
+        }
+        let moved = |k: usize| self.motions[k] != self.setup.obstacles[k].motion();
+        if !(0..self.motions.len()).any(moved) {
+            return Ok(());
+        }
+        self.check_motions()?;
+        let uncovered = self.place_obstacles(self.motions.clone());
+        self.refill(&uncovered);
+        Ok(())
+    }
+
+    fn check_motions(&self) -> Result<(), StepError> {
+        for (k, (motion, obstacle)) in self.motions.iter().zip(&self.setup.obstacles).enumerate() {
+            if !motion.is_finite() {
+                let (solver, quantity) = (self.name(), "motion lent to an obstacle");
+                return Err(StepError::NotFinite { solver, quantity, id: k as u64, step: self.steps });
+            }
+            let (low, high) = obstacle.shape.bounds();
+            let reach = 0.5 * (high - low).length() * motion.spin.length();
+            let speed = (motion.velocity.length() + reach) / self.setup.lattice_speed();
+            if speed > FASTEST {
+                return Err(StepError::TooStiff {
+                    what: format!(
+                        "speed of obstacle `{}` in cells per step after step {}",
+                        obstacle.name, self.steps
+                    ),
+                    value: speed,
+                    allowed: FASTEST,
+                    hint: "take a smaller step, or a slower motion".to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the obstacles where they are now and finds cells, runs and links again. Returns the cells that they left.
+    pub(crate) fn place_obstacles(&mut self, motions: Vec<Motion<L::Dim>>) -> Vec<Uncovered<L::Dim>> {
+        let domain = Domain::of(&self.setup);
+        let mut ranges: Vec<Range> = Vec::new();
+        for (k, motion) in motions.iter().enumerate() {
+            if *motion == self.setup.obstacles[k].motion() {
+                continue;
+            }
+            let mut before = self.setup.obstacles[k].clone();
+            self.setup.obstacles[k].set_motion(*motion, &domain);
+            for obstacle in [&mut before, &mut self.setup.obstacles[k]] {
+                let images = domain.images(obstacle, 0.0);
+                ranges.extend(images.into_iter().map(|image| domain.near(obstacle, image, 0.0)));
+            }
+        }
+        self.motions = motions;
+        if ranges.is_empty() {
+            return Vec::new();
+        }
+        let uncovered = self.cover_again(&domain, &ranges);
+        self.link_again(ranges.iter().any(|range| domain.is_at_face(*range)));
+        uncovered
+    }
+
+    fn cover_again(&mut self, domain: &Domain<L::Dim>, ranges: &[Range]) -> Vec<Uncovered<L::Dim>> {
+        let images: Vec<_> = self.setup.obstacles.iter().map(|body| domain.images(body, 0.0)).collect();
+        let mut uncovered = Vec::new();
+        for cell in ranges.iter().flat_map(|range| cells_of(*range)) {
+            let centre = domain.centre(cell.map(|x| x as i64));
+            let covers = |(body, images): (&crate::Obstacle<L::Dim>, &Vec<_>)| {
+                images.iter().any(|image| body.shape.contains(centre - *image))
+            };
+            let number =
+                self.setup.obstacles.iter().zip(&images).position(covers).map_or(0, |k| k as u16 + 1);
+            let before = std::mem::replace(&mut self.cover[cell_index(self.setup.cells, cell)], number);
+            match (before, number) {
+                (0, 0) => {}
+                (0, _) => self.fluid_cells -= 1,
+                (_, 0) => {
+                    self.fluid_cells += 1;
+                    let body = &self.setup.obstacles[before as usize - 1];
+                    let arm = centre - domain.nearest_image(body, centre);
+                    uncovered.push(Uncovered { cell, velocity: body.velocity_at(arm) });
+                }
+                _ => {}
+            }
+        }
+        for range in ranges {
+            let cover = &self.cover;
+            let is_fluid = |cell| cover[cell_index(domain.cells, cell)] == 0;
+            self.runs.refresh(&self.populations.grid, *range, is_fluid);
+        }
+        uncovered
+    }
+
+    fn link_again(&mut self, faces_too: bool) {
+        let builder = Builder::<L, Q>::new(&self.setup, &self.populations.grid, &self.cover);
+        let mut obstacles = builder.obstacles();
+        for (fresh, before) in obstacles.iter_mut().zip(&self.beyond.obstacles) {
+            (fresh.force, fresh.torque) = (before.force, before.torque);
+        }
+        if faces_too {
+            self.beyond.copies = builder.copies();
+            self.beyond.open = builder.open_faces();
+        }
+        self.beyond.obstacles = obstacles;
+    }
+
+    fn refill(&mut self, uncovered: &[Uncovered<L::Dim>]) {
+        let filled: Vec<[f64; Q]> = uncovered.iter().map(|fresh| self.filling(fresh, uncovered)).collect();
+        for (fresh, values) in uncovered.iter().zip(filled) {
+            let place = self.populations.grid.place(fresh.cell.map(|x| x as i64));
+            self.populations.set_entering::<L, Q>(place, values.map(T::of));
+        }
+    }
+
+    /// What enters a cell that a body left.
+    fn filling(&self, fresh: &Uncovered<L::Dim>, uncovered: &[Uncovered<L::Dim>]) -> [f64; Q] {
+        let builder = Builder::<L, Q>::new(&self.setup, &self.populations.grid, &self.cover);
+        let cell = fresh.cell.map(|x| x as i64);
+        let (mut count, mut excess, mut deviation) = (0.0, 0.0, [0.0; Q]);
+        for direction in 1..Q {
+            let beside = std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]));
+            let beside = match builder.neighbour(beside) {
+                Neighbour::Fluid => beside,
+                Neighbour::Wrapped(image) => image,
+                _ => continue,
+            };
+            if uncovered.iter().any(|other| other.cell.map(|x| x as i64) == beside) {
+                continue;
+            }
+            let place = self.populations.grid.place(beside);
+            let (density, momentum) = self.moments(place);
+            let f = self.populations.entering::<L, Q>(place).map(T::double);
+            let rest = equilibrium::<L, Q>(density, momentum.map(|j| j / (1.0 + density)));
+            count += 1.0;
+            excess += density;
+            (0..Q).for_each(|i| deviation[i] += f[i] - rest[i]);
+        }
+        let share = if count > 0.0 { 1.0 / count } else { 0.0 };
+        let velocity = fresh.velocity.padded().map(|c| c / self.setup.lattice_speed());
+        let mut f = equilibrium::<L, Q>(excess * share, velocity);
+        (0..Q).for_each(|i| f[i] += deviation[i] * share);
+        f
+    }
+}
