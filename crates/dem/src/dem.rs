@@ -11,8 +11,8 @@ use crate::wall::Wall;
 use crate::{lists, motion};
 use granular_core::solver::check_step;
 use granular_core::{
-    Blocks, Dim, FieldSink, Limits, Linear, Location, Memory, Section, Shown, SnapshotError, Solver,
-    StepError,
+    Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
+    SnapshotError, Solver, StepError,
 };
 
 /// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
@@ -356,6 +356,13 @@ fn choose_law<D: Dim>(
         Box::new(Contacts::<D, LinearFrictional>::new(materials, tension, blocks))
     } else {
         Box::new(Contacts::<D, LinearNormal>::new(materials, tension, blocks))
+    }
+}
+
+impl<D: Dim> Provides<GrainMotion<D>> for Dem<D> {
+    fn view(&self) -> granular_core::Grains<'_, D> {
+        let Grains { position, velocity, spin, radius, id, .. } = &self.grains;
+        granular_core::Grains::new(position, velocity, spin, radius, id)
     }
 }
 
