@@ -47,6 +47,7 @@
 
 mod boundary;
 mod collision;
+mod gauge;
 mod kernel;
 mod lattice;
 mod lbm;
@@ -61,12 +62,15 @@ mod setup;
 mod shape;
 mod show;
 mod solver;
+#[cfg(feature = "serde")]
+pub mod spec;
 
 pub use collision::{OddRate, Operator};
+pub use gauge::Gauge;
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
 pub use links::WallScheme;
-pub use obstacle::Obstacle;
+pub use obstacle::{Obstacle, Reference};
 pub use open::OpenScheme;
 pub use real::Real;
 pub use setup::{Face, Profile, Setup, SetupError};

@@ -22,6 +22,18 @@ pub struct Obstacle<D: Dim> {
     pub velocity: D::Vec,
     /// Rate of turning of its surface \[1/s\]. Shapes do not turn with it: it suits disks and spheres.
     pub spin: D::Spin,
+    /// What forces are shown over, as `drag_coefficient_of_<name>` (along x) and `lift_coefficient_of_<name>` (along y).
+    pub reference: Option<Reference>,
+}
+
+/// Speed and length that make a force a coefficient: `2 F / (density speed^2 length)` in the plane, where forces are per
+/// metre of depth, and `length^2` in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Speed \[m/s\].
+    pub speed: f64,
+    /// Length \[m\]; in space the root of an area.
+    pub length: f64,
 }
 
 impl<D: Dim> Obstacle<D> {
@@ -34,6 +46,7 @@ impl<D: Dim> Obstacle<D> {
             displacement: D::Vec::ZERO,
             velocity: D::Vec::ZERO,
             spin: D::Spin::ZERO,
+            reference: None,
         }
     }
 

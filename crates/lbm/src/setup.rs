@@ -1,6 +1,7 @@
 //! What a flow is made of, in physical units.
 
 use crate::collision::Operator;
+use crate::gauge::Gauge;
 use crate::obstacle::Obstacle;
 use crate::open::OpenScheme;
 use granular_core::{Dim, Linear, Vector};
@@ -32,6 +33,8 @@ pub struct Setup<D: Dim> {
     pub faces: [[Face<D>; 2]; 3],
     /// Bodies in the fluid.
     pub obstacles: Vec<Obstacle<D>>,
+    /// Points at which pressure and velocity are shown.
+    pub gauges: Vec<Gauge<D>>,
     /// Largest speed that is expected \[m/s\], for the bound on the Mach number where it does not follow from faces and obstacles.
     pub expected_speed: f64,
 }
@@ -116,6 +119,7 @@ impl<D: Dim> Setup<D> {
             smagorinsky: None,
             faces,
             obstacles: Vec::new(),
+            gauges: Vec::new(),
             expected_speed: 0.0,
         }
     }

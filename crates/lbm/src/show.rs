@@ -2,7 +2,7 @@
 
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
-use crate::obstacle::cell_index;
+use crate::obstacle::{Obstacle, Reference, cell_index};
 use crate::real::Real;
 use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, Vector};
 
@@ -41,6 +41,17 @@ pub(crate) fn shown<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>) 
         }
         let name = format!("torque_on_{}_z", obstacle.name);
         list.push(of((&name, "N m", "torque about z of the fluid on an obstacle"), ShownAs::Number));
+        for name in coefficient_names(obstacle) {
+            list.push(of((&name, "-", "force of the fluid over that of its reference"), ShownAs::Number));
+        }
+    }
+    for gauge in &lbm.setup.gauges {
+        let name = format!("pressure_at_{}", gauge.name);
+        list.push(of((&name, "Pa", "pressure over that at rest at a gauge"), ShownAs::Number));
+        for axis in L::Dim::AXES {
+            let name = format!("velocity_at_{}_{axis}", gauge.name);
+            list.push(of((&name, "m/s", "velocity at a gauge"), ShownAs::Number));
+        }
     }
     list
 }
@@ -59,6 +70,41 @@ pub(crate) fn show<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, s
         let name = format!("torque_on_{}_z", obstacle.name);
         if sink.wants(&name) {
             sink.number(&name, "N m", granular_core::Spin::z(lbm.torque_on(number)));
+        }
+        let scale = obstacle.reference.map_or(0.0, |Reference { speed, length }| {
+            2.0 / (lbm.setup.density * speed * speed * length.powi(L::Dim::N as i32 - 1))
+        });
+        for (axis, name) in coefficient_names(obstacle).enumerate() {
+            if sink.wants(&name) {
+                sink.number(&name, "-", force.component(axis) * scale);
+            }
+        }
+    }
+    show_gauges(lbm, sink);
+}
+
+/// Names of drag and lift coefficients, for an obstacle that has a reference.
+fn coefficient_names<D: Dim>(obstacle: &Obstacle<D>) -> impl Iterator<Item = String> + '_ {
+    let names = ["drag", "lift"].map(|kind| format!("{kind}_coefficient_of_{}", obstacle.name));
+    names.into_iter().filter(|_| obstacle.reference.is_some())
+}
+
+fn show_gauges<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, sink: &mut dyn FieldSink) {
+    for gauge in &lbm.setup.gauges {
+        let pressure = format!("pressure_at_{}", gauge.name);
+        let velocity = L::Dim::AXES.iter().map(|axis| format!("velocity_at_{}_{axis}", gauge.name));
+        let velocity: Vec<String> = velocity.collect();
+        if !sink.wants(&pressure) && !velocity.iter().any(|name| sink.wants(name)) {
+            continue;
+        }
+        let flow = lbm.flow_at(gauge.place);
+        if sink.wants(&pressure) {
+            sink.number(&pressure, "Pa", flow.map_or(f64::NAN, |flow| flow.pressure));
+        }
+        for (axis, name) in velocity.iter().enumerate() {
+            if sink.wants(name) {
+                sink.number(name, "m/s", flow.map_or(f64::NAN, |flow| flow.velocity.component(axis)));
+            }
         }
     }
 }

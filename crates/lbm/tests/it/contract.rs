@@ -23,6 +23,8 @@ fn spheres() -> Lbm3 {
     setup
         .obstacles
         .push(Obstacle::new("sphere", Ball { centre: DVec3::new(0.009, 0.006, 0.0125), radius: 0.0031 }));
+    setup.obstacles[0].reference = Some(Reference { speed: 0.0008, length: 0.0062 });
+    setup.gauges.push(Gauge { name: "behind".into(), place: DVec3::new(0.0131, 0.006, 0.0125) });
     Lbm3::new(setup).unwrap()
 }
 
