@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::{self, Model};
 use crate::progress::duration;
-use crate::scene::{End, Scene};
+use crate::scene::{Scene, SolverSpec};
 use crate::scene_file::{SceneProblem, SceneText};
 use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
@@ -56,7 +56,7 @@ pub(crate) fn steps(scene: &Scene, model: &Model, limits: &Limits) -> Vec<f64> {
 /// Limits of a model and the reasons to refuse it.
 pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<String>) {
     let mut limits = Limits::default();
-    model.simulation.solver().limits(&mut limits);
+    model.simulation.limits(&mut limits);
     let steps = steps(scene, model, &limits);
     let mut problems = Vec::new();
     if let Some(largest) = limits.largest_allowed() {
@@ -65,6 +65,9 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
             let path = match stage.time_step {
                 Some(_) => format!("stages.{k}.time_step"),
                 None if model.time_step.is_some() => format!("solvers.{solver}.time_step"),
+                None if matches!(scene.solvers.values().next(), Some(SolverSpec::Lbm(_))) => {
+                    format!("solvers.{solver}.step")
+                }
                 None => format!("solvers.{solver}.steps_per_contact"),
             };
             if dt > largest.dt {
@@ -101,13 +104,7 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
         .stages
         .iter()
         .zip(&steps)
-        .map(|(stage, &dt)| {
-            let longest = match stage.end {
-                End::For(time) => time.value(),
-                End::Quiet { within, .. } => within.value(),
-            };
-            (stage.name.clone(), dt, longest)
-        })
+        .map(|(stage, &dt)| (stage.name.clone(), dt, stage.end.longest()))
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
     let estimated_seconds =
@@ -127,12 +124,17 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
 /// Wall time of one step, measured.
 fn seconds_per_step(model: &mut Model, dt: f64) -> f64 {
     let begun = Instant::now();
-    let mut steps = 0;
+    let (mut steps, mut burst) = (0, 1);
+    if model.simulation.begin_segment(dt).is_err() {
+        return f64::NAN;
+    }
     while begun.elapsed() < PROBE {
-        if model.simulation.solver_mut().advance(dt, 20).is_err() {
+        if model.simulation.advance(burst).is_err() {
             return f64::NAN;
         }
-        steps += 20;
+        steps += burst as u32;
+        // A step of a large scene may take as long as all of the probe.
+        burst = (2 * burst).min(20);
     }
     begun.elapsed().as_secs_f64() / f64::from(steps)
 }

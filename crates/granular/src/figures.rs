@@ -2,6 +2,9 @@
 
 mod column;
 mod flow;
+mod fluid;
+mod map;
+mod spectrum;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;
@@ -9,7 +12,7 @@ use crate::model::ColumnSize;
 use crate::observers::number_of;
 use crate::run::StageRecord;
 use crate::scene::{FigureSpec, Scene};
-use granular_core::Simulation;
+use granular_core::{ShownAs, Simulation};
 use granular_io::figure::{Axis, Chart, Series, Style};
 use granular_io::{Table, read_table};
 use serde_json::{Map, Value, json};
@@ -61,6 +64,26 @@ pub fn draw(
                 let units = units(scene, record(records, stage)?, column);
                 flow::chains(scene, folder, contacts, *time, units)?.figure()
             }
+            FigureSpec::Map { fields, color, diverging, range, stage, times, .. } => {
+                let range = range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
+                let spec = map::MapSpec { fields, color, diverging: *diverging, range, times };
+                map::map(scene, folder, record(records, stage)?, &spec)?.figure()
+            }
+            FigureSpec::Profile { profile, column, stage, times, length, scale, references, .. } => {
+                let spec = fluid::ProfileFigure {
+                    column,
+                    times,
+                    length: length.map(|length| length.value()),
+                    scale: *scale,
+                    references,
+                };
+                fluid::profile(scene, &table_of(folder, profile)?, record(records, stage)?, &spec).figure()
+            }
+            FigureSpec::Spectrum { table, column, stage, reference, .. } => {
+                let record = record(records, stage)?;
+                fluid::spectrum_chart(scene, &table_of(folder, table)?, (column, record), *reference)?
+                    .figure()
+            }
         };
         figure.save(&path)?;
         paths.push(path);
@@ -72,7 +95,7 @@ pub fn draw(
 pub(crate) fn metrics(
     scene: &Scene,
     simulation: &Simulation,
-    records: &[StageRecord],
+    (folder, records): (&RunFolder, &[StageRecord]),
     column: Option<ColumnSize>,
 ) -> Value {
     let mut metrics = Map::new();
@@ -81,8 +104,10 @@ pub(crate) fn metrics(
             metrics.insert(name.to_owned(), json!(value));
         }
     };
-    for name in ["front", "height", "largest_overlap", "unconnected"] {
-        add(name, number_of(simulation, name));
+    for shown in simulation.solver().shown() {
+        if shown.kind == ShownAs::Number && is_metric(&shown.name) {
+            add(&shown.name, number_of(simulation, &shown.name).filter(|number| number.is_finite()));
+        }
     }
     if let (Some(column), Some(release)) = (column, release_of(scene, records)) {
         add("aspect_ratio", Some(release.height / column.width));
@@ -92,7 +117,15 @@ pub(crate) fn metrics(
     }
     let residual = number_of(simulation, "energy_residual").filter(|residual| residual.is_finite());
     add("energy_residual", residual);
+    fluid::peaks(scene, folder, records, &mut metrics);
     Value::Object(metrics)
+}
+
+/// Whether the last value of a number that the solver shows belongs to the result.
+fn is_metric(name: &str) -> bool {
+    let named = ["front", "height", "largest_overlap", "unconnected", "largest_speed", "mass_excess"];
+    let begins = ["drag_coefficient_of_", "lift_coefficient_of_", "pressure_at_", "velocity_at_"];
+    named.contains(&name) || begins.iter().any(|begin| name.starts_with(begin))
 }
 
 /// The stage at whose start a gate opens, or the last one.

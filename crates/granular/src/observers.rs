@@ -1,5 +1,9 @@
 //! Observers of a run: tables, files of fields, rest, and the timer of snapshots.
 
+mod profile;
+
+pub(crate) use profile::Line;
+
 use crate::failure::Failure;
 use crate::scene::{EverySpec, Output, Writer};
 use granular_core::{
@@ -17,9 +21,10 @@ use std::time::Duration;
 pub(crate) fn of_output(
     output: &Output,
     folder: &Path,
-    shown: &[Shown],
+    simulation: &Simulation,
     fresh: bool,
 ) -> Result<Scheduled, Failure> {
+    let shown = &simulation.solver().shown();
     let every = match output.every {
         EverySpec::Time(time) => Every::Time(time.value()),
         EverySpec::Steps(steps) => Every::Steps(steps),
@@ -32,6 +37,10 @@ pub(crate) fn of_output(
         Writer::Table { probes, .. } => Box::new(TableObserver::new(path, probes, shown, fresh)?),
         Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, fields, false, fresh)?),
         Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, fields, true, fresh)?),
+        Writer::Profile { from, to, points, fields, .. } => {
+            let line = profile::Line::of(from, to, *points);
+            Box::new(profile::ProfileObserver::new(path, line, fields, simulation, fresh)?)
+        }
         #[cfg(feature = "hdf5")]
         Writer::Hdf5 { fields, .. } => Box::new(hdf5::Hdf5Observer::new(&path, fields, fresh)?),
         #[cfg(not(feature = "hdf5"))]
@@ -156,6 +165,47 @@ impl Observer for FilesObserver {
     }
 }
 
+/// Name of the observer that ends a stage.
+pub(crate) const END_OF_STAGE: &str = "end of stage";
+
+/// Ends a stage when the flow changes little.
+pub(crate) struct Steady {
+    change: f64,
+    /// Kinetic energy at the look before \[J\].
+    before: f64,
+    reached: Arc<AtomicBool>,
+}
+
+impl Steady {
+    /// Watches from the start of a stage; raises the flag when it ends it.
+    pub(crate) fn scheduled(change: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
+        let steady = Self { change, before: f64::NAN, reached };
+        Scheduled::new(END_OF_STAGE, Every::Time(PATIENCE * within), Box::new(steady))
+    }
+}
+
+impl Observer for Steady {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let energy = number_of(simulation, "kinetic_energy").unwrap_or(f64::NAN);
+        let before = std::mem::replace(&mut self.before, energy);
+        // Not a number before the second look; a fluid at rest has no energy to change yet.
+        if energy > 0.0 && (energy - before).abs() < self.change * energy {
+            self.reached.store(true, Ordering::Relaxed);
+            return Ok(Flow::Stop);
+        }
+        Ok(Flow::Continue)
+    }
+
+    fn save(&self, to: &mut Section) {
+        to.put_one("before", self.before);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        self.before = from.one("before")?;
+        Ok(())
+    }
+}
+
 /// Ends a stage when the grains have been at rest for a while.
 pub(crate) struct Rest {
     threshold: f64,
@@ -175,7 +225,7 @@ impl Rest {
     pub(crate) fn scheduled(threshold: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
         let patience = PATIENCE * within;
         let rest = Self { threshold, patience, loud: 0.0, reached };
-        Scheduled::new("rest", Every::Time(patience / LOOKS), Box::new(rest))
+        Scheduled::new(END_OF_STAGE, Every::Time(patience / LOOKS), Box::new(rest))
     }
 }
 

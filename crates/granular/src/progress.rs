@@ -48,12 +48,16 @@ impl Observer for Progress {
         let wall = now.0.duration_since(since).as_secs_f64();
         let rate = (clock.step() - step) as f64 / wall.max(1e-9);
         let pace = (clock.time() - time) / wall.max(1e-9);
-        let mut numbers = Numbers::wanting(["largest_overlap"]);
+        let mut numbers = Numbers::wanting(["largest_overlap", "largest_speed"]);
         simulation.solver().show(&mut numbers);
-        let overlap = numbers.get("largest_overlap").unwrap_or(0.0);
+        let worst = match (numbers.get("largest_overlap"), numbers.get("largest_speed")) {
+            (Some(overlap), _) => format!("overlap {overlap:.2} %"),
+            (None, Some(speed)) => format!("largest speed {speed:.3e} m/s"),
+            (None, None) => String::new(),
+        };
         let left = (self.stage.end - clock.time()).max(0.0) / pace;
         let line = format!(
-            "{}  {:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  overlap {overlap:.2} %  at most {} left",
+            "{}  {:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  {worst}  at most {} left",
             self.stage.name,
             clock.time(),
             self.stage.end,

@@ -4,7 +4,7 @@ use crate::check;
 use crate::failure::Failure;
 use crate::folder::{RunFolder, provenance};
 use crate::model::{self, Model};
-use crate::observers::{self, Rest, SnapshotTimer};
+use crate::observers::{self, END_OF_STAGE, Rest, SnapshotTimer, Steady};
 use crate::progress;
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
@@ -42,10 +42,21 @@ pub struct StageRecord {
     /// Why it ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
-    /// Front and height of the main mass at its start \[m\].
+    /// Front of the main mass of grains at its start \[m\]; not a number without grains.
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub front: f64,
-    /// Height of the main mass at its start \[m\].
+    /// Height of the main mass of grains at its start \[m\]; not a number without grains.
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub height: f64,
+}
+
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_unknown(value: &f64) -> bool {
+    value.is_nan()
 }
 
 /// A run under way.
@@ -64,8 +75,8 @@ struct Session<'a> {
     quiet: bool,
     begun: Instant,
     first_step: u64,
-    /// State of the observer of rest, when a resumed run was within a stage that waits for it.
-    rest: Option<Section>,
+    /// State of the observer that ends a stage, when a resumed run was within a stage that waits for it.
+    watcher: Option<Section>,
 }
 
 /// Runs a scene in a new folder.
@@ -146,16 +157,16 @@ impl<'a> Session<'a> {
         quiet: bool,
         fresh: bool,
     ) -> Result<Self, Failure> {
-        let shown = model.simulation.solver().shown();
         let outputs = scene.outputs.iter();
-        let outputs = outputs.map(|output| observers::of_output(output, folder.path(), &shown, fresh));
+        let outputs =
+            outputs.map(|output| observers::of_output(output, folder.path(), &model.simulation, fresh));
         Ok(Self {
             scene,
             text: SceneText::read(folder.scene_path())?.text().to_owned(),
             outputs: outputs.collect::<Result<_, _>>()?,
             store: folder.snapshots(),
             first_step: 0,
-            rest: None,
+            watcher: None,
             begun: Instant::now(),
             records: Vec::new(),
             model,
@@ -212,9 +223,10 @@ impl<'a> Session<'a> {
         if !under_way {
             self.begin_stage(index)?;
         }
-        let (longest, quiet_flag) = match stage.end {
-            End::For(time) => (time.value(), None),
-            End::Quiet { within, .. } => (within.value(), Some(Arc::new(AtomicBool::new(false)))),
+        let longest = stage.end.longest();
+        let quiet_flag = match stage.end {
+            End::For(_) => None,
+            End::Quiet { .. } | End::Steady { .. } => Some(Arc::new(AtomicBool::new(false))),
         };
         let mut extra = self.stage_observers(index, longest, quiet_flag.as_ref())?;
         let ended = loop {
@@ -231,7 +243,7 @@ impl<'a> Session<'a> {
                 // Rest goes first: whether a snapshot is due at the same step is a matter of the
                 // wall clock, and must not decide how long the stage lasts.
                 Ending::Stopped if quiet_flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) => {
-                    break "at rest";
+                    break if let End::Steady { .. } = stage.end { "steady" } else { "at rest" };
                 }
                 Ending::Stopped => {
                     self.save_with(index, &extra)?;
@@ -239,7 +251,12 @@ impl<'a> Session<'a> {
                     // the next snapshot due at once.
                     extra[0] = self.snapshot_timer();
                 }
-                Ending::Finished if quiet_flag.is_some() => break "not at rest within the time",
+                Ending::Finished if quiet_flag.is_some() => {
+                    break match stage.end {
+                        End::Steady { .. } => "not steady within the time",
+                        _ => "not at rest within the time",
+                    };
+                }
                 Ending::Finished => break "time",
             }
         };
@@ -273,14 +290,18 @@ impl<'a> Session<'a> {
         quiet_flag: Option<&Arc<AtomicBool>>,
     ) -> Result<Vec<Scheduled>, Failure> {
         let mut extra = vec![self.snapshot_timer()];
-        if let (End::Quiet { kinetic_over_potential, within }, Some(flag)) =
-            (self.scene.stages[index].end, quiet_flag)
-        {
-            let mut rest = Rest::scheduled(kinetic_over_potential, within.value(), flag.clone());
-            if let Some(saved) = self.rest.take() {
-                rest.restore(&saved)?;
+        let watcher = quiet_flag.and_then(|flag| match self.scene.stages[index].end {
+            End::For(_) => None,
+            End::Quiet { kinetic_over_potential, within } => {
+                Some(Rest::scheduled(kinetic_over_potential, within.value(), flag.clone()))
             }
-            extra.push(rest);
+            End::Steady { change, within } => Some(Steady::scheduled(change, within.value(), flag.clone())),
+        });
+        if let Some(mut watcher) = watcher {
+            if let Some(saved) = self.watcher.take() {
+                watcher.restore(&saved)?;
+            }
+            extra.push(watcher);
         }
         if !self.quiet {
             let name =
@@ -341,7 +362,7 @@ impl Session<'_> {
         self.save_with(stage, &[])
     }
 
-    /// Saves clock, solver, outputs, the observer of rest, and which stage is under way.
+    /// Saves clock, solvers, outputs, the observer that ends the stage, and which stage is under way.
     fn save_with(&mut self, stage: usize, extra: &[Scheduled]) -> Result<(), Failure> {
         let mut sections = self.model.simulation.save();
         let mut run = Section::new("run");
@@ -351,7 +372,7 @@ impl Session<'_> {
         run.put_text("scene", &self.text);
         sections.push(run);
         sections.extend(self.outputs.iter().map(Scheduled::save));
-        sections.extend(extra.iter().filter(|observer| observer.name() == "rest").map(Scheduled::save));
+        sections.extend(extra.iter().filter(|observer| observer.name() == END_OF_STAGE).map(Scheduled::save));
         self.store.save(self.model.simulation.clock().step(), &sections)?;
         Ok(())
     }
@@ -379,7 +400,8 @@ impl Session<'_> {
         }
         self.records = serde_json::from_str(&run.text("records")?)
             .map_err(|error| Failure::Io(format!("section `run/records` of the snapshot: {error}")))?;
-        self.rest = sections.iter().find(|section| section.name() == "observer rest").cloned();
+        let name = format!("observer {END_OF_STAGE}");
+        self.watcher = sections.iter().find(|section| section.name() == name).cloned();
         Ok(run.one::<u64>("stage")? as usize)
     }
 
@@ -387,7 +409,8 @@ impl Session<'_> {
         let simulation = &self.model.simulation;
         let (clock, wall) = (simulation.clock(), self.begun.elapsed().as_secs_f64());
         let steps = clock.step() - self.first_step;
-        let metrics = crate::figures::metrics(self.scene, simulation, &self.records, self.model.column);
+        let metrics =
+            crate::figures::metrics(self.scene, simulation, (&self.folder, &self.records), self.model.column);
         let facts = json!({
             "scene": self.folder.scene_path().display().to_string(),
             "solver": simulation.solver().name(),

@@ -2,10 +2,16 @@
 //!
 //! These types are what a scene file may say. `docs/scene-reference.md` is generated from them.
 
+pub mod fluid;
 pub(crate) mod names;
+pub mod outputs;
 
+pub use outputs::{EverySpec, FigureSpec, Output, ReferenceCurve, Writer};
+
+use fluid::FluidSpec;
 use granular_core::units::{Acceleration, Length, Time};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec};
+use granular_lbm::spec::LbmSpec;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -21,19 +27,25 @@ pub struct Scene {
     /// One line about the scene, for figures and reports.
     #[serde(default)]
     pub title: String,
-    /// Gravity along each axis, such as `[0.0, -9.81]`; none by default.
+    /// Gravity along each axis, such as `[0.0, -9.81]`; none by default. On a fluid it acts as a force that drives it.
     #[serde(default)]
     pub gravity: Vec<Acceleration>,
     /// Materials of grains and walls, by names of your choice.
+    #[serde(default)]
     pub materials: BTreeMap<String, MaterialSpec>,
     /// The grains, described apart from the method.
-    pub sample: Sample,
-    /// Walls; none by default.
+    #[serde(default)]
+    pub sample: Option<Sample>,
+    /// The fluid, described apart from the method.
+    #[serde(default)]
+    pub fluid: Option<FluidSpec>,
+    /// Walls of grains; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
     /// What happens, one stage after the other.
     pub stages: Vec<Stage>,
-    /// The method, under a name of your choice, such as `{ "grains": Dem(()) }`. Exactly one.
+    /// The method, under a name of your choice, such as `{ "grains": Dem(()) }` or
+    /// `{ "water": Lbm((spacing: "1 mm")) }`. Exactly one.
     pub solvers: BTreeMap<String, SolverSpec>,
     /// What to write during the run.
     #[serde(default)]
@@ -54,17 +66,19 @@ fn default_snapshot_interval() -> Time {
 /// Plane or space: how many components positions and velocities have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Dimension {
-    /// Disks in the plane, x to the right and y up; everything is per metre of depth.
+    /// The plane, x to the right and y up; grains are disks, and everything is per metre of depth.
     Plane,
-    /// Spheres in space, z up.
+    /// Space, z up; grains are spheres.
     Space,
 }
 
 /// The method that solves the scene.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum SolverSpec {
-    /// Discrete element method.
+    /// Discrete element method, for grains.
     Dem(DemSpec),
+    /// Lattice Boltzmann method, for a fluid.
+    Lbm(LbmSpec),
 }
 
 /// The grains.
@@ -261,6 +275,23 @@ pub enum End {
         /// of it.
         within: Time,
     },
+    /// When the flow of a fluid has become steady.
+    Steady {
+        /// Relative change of its kinetic energy over a twentieth of `within` below which it is steady, such as 1e-6.
+        change: f64,
+        /// Time after which the stage ends in any case.
+        within: Time,
+    },
+}
+
+impl End {
+    /// Time after which the stage ends in any case \[s\].
+    pub fn longest(&self) -> f64 {
+        match self {
+            Self::For(time) => time.value(),
+            Self::Quiet { within, .. } | Self::Steady { within, .. } => within.value(),
+        }
+    }
 }
 
 /// A change at the start of a stage.
@@ -282,115 +313,4 @@ pub enum Change {
     Open(String),
     /// The wall of this name comes back.
     Close(String),
-}
-
-/// Something to write on a schedule.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Output {
-    /// How often.
-    pub every: EverySpec,
-    /// What to write, and where.
-    pub write: Writer,
-}
-
-/// How often something is written: at the start and then in equal intervals.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-pub enum EverySpec {
-    /// Every so much simulated time, at the first step at or after it.
-    Time(Time),
-    /// Every so many steps, 1 or more.
-    Steps(u64),
-}
-
-/// What is written.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum Writer {
-    /// One row of numbers per look, in a CSV file with units in its head; the first column is `time`.
-    Table {
-        /// File in the run folder, such as `series.csv`.
-        path: String,
-        /// Numbers to write; `granular info <scene>` lists all there are.
-        probes: Vec<String>,
-    },
-    /// Fields of all grains, for ParaView: one `.vtp` per frame and one `.pvd` that lists them.
-    Fields {
-        /// Name of the files in the run folder, without ending.
-        path: String,
-        /// Fields to write; `granular info <scene>` lists all there are.
-        fields: Vec<String>,
-    },
-    /// Contacts as lines between grains, for ParaView.
-    Contacts {
-        /// Name of the files in the run folder, without ending.
-        path: String,
-        /// Fields of contacts (`Link`) to write; `granular info <scene>` lists all there are.
-        fields: Vec<String>,
-    },
-    /// Fields of all grains in one temporal `.vtkhdf` file (cargo feature `hdf5`).
-    Hdf5 {
-        /// Name of the file in the run folder, without ending.
-        path: String,
-        /// Fields to write; `granular info <scene>` lists all there are.
-        fields: Vec<String>,
-    },
-}
-
-/// A figure, as `<path>.svg` and `<path>.png` in the run folder.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum FigureSpec {
-    /// Columns of a table over time.
-    Series {
-        /// Name of the figure in the run folder, without ending.
-        path: String,
-        /// Path of the `Table` output to read.
-        table: String,
-        /// Columns to draw, at least one.
-        columns: Vec<String>,
-    },
-    /// Run-out and height of a collapsing column over time: lengths over the width of the column,
-    /// times over sqrt(H/g).
-    Runout {
-        /// Name of the figure in the run folder, without ending.
-        path: String,
-        /// Path of the `Table` output to read; it must hold `front` and `height`.
-        table: String,
-        /// Name of the stage in which the column collapses.
-        stage: String,
-    },
-    /// Where the energy goes after a stage begins, over the energy at its start.
-    Energies {
-        /// Name of the figure in the run folder, without ending.
-        path: String,
-        /// Path of the `Table` output to read; it must hold the energies and losses.
-        table: String,
-        /// Name of the stage at whose start the balance begins.
-        stage: String,
-    },
-    /// Grains, coloured by a field, at several times.
-    Flow {
-        /// Name of the figure in the run folder, without ending.
-        path: String,
-        /// Path of the `Fields` output to read; it must hold `radius` and the field of the colour.
-        fields: String,
-        /// Field that gives the colour.
-        color: String,
-        /// Name of the stage from whose start times count.
-        stage: String,
-        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
-        times: Vec<f64>,
-    },
-    /// Force chains: contacts of one frame, their width by the normal force.
-    ForceChains {
-        /// Name of the figure in the run folder, without ending.
-        path: String,
-        /// Path of the `Contacts` output to read; it must hold `normal_force`.
-        contacts: String,
-        /// Name of the stage from whose start the time counts.
-        stage: String,
-        /// Time in units of sqrt(H/g) of a column; in seconds for other samples.
-        time: f64,
-    },
 }

@@ -213,6 +213,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         Some(Flow { pressure: excess / 3.0 * self.setup.density * speed * speed, velocity })
     }
 
+    /// Number of cells that an obstacle covers, by the number of the obstacle.
+    pub fn cells_in(&self, obstacle: usize) -> usize {
+        self.cover.iter().filter(|number| **number as usize == obstacle + 1).count()
+    }
+
     /// Centre of a cell \[m\].
     pub fn centre(&self, cell: [usize; 3]) -> <L::Dim as Dim>::Vec {
         Domain::of(&self.setup).centre(cell.map(|x| x as i64))

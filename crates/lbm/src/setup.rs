@@ -82,6 +82,11 @@ impl<D: Dim> Profile<D> {
         Self(Arc::new(velocity))
     }
 
+    /// Velocity \[m/s\] at a point \[m\].
+    pub fn at(&self, point: D::Vec) -> D::Vec {
+        (self.0)(point)
+    }
+
     /// The same velocity everywhere.
     pub fn uniform(velocity: D::Vec) -> Self {
         Self::new(move |_| velocity)

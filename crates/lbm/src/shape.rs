@@ -81,24 +81,30 @@ impl<D: Dim> Shape<D> for Block<D> {
     }
 }
 
-/// A polygon in the plane, its corners in order around it.
+/// A polygon in the plane of x and y, its corners in order around it; in space a prism without ends along z.
 #[derive(Clone, Debug)]
 pub struct Polygon {
     /// Corners \[m\], three or more.
     pub corners: Vec<granular_core::glam::DVec2>,
 }
 
-impl Shape<granular_core::D2> for Polygon {
-    fn contains(&self, point: granular_core::glam::DVec2) -> bool {
+/// Half the length of a prism without ends \[m\].
+const ENDLESS: f64 = 1e9;
+
+impl<D: Dim> Shape<D> for Polygon {
+    fn contains(&self, point: D::Vec) -> bool {
+        let [x, y, _] = point.padded();
         let ends = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
-        let crossed = ends.filter(|(a, b)| {
-            (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
-        });
+        let crossed =
+            ends.filter(|(a, b)| (a.y > y) != (b.y > y) && x < a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
         crossed.count() % 2 == 1
     }
 
-    fn bounds(&self) -> (granular_core::glam::DVec2, granular_core::glam::DVec2) {
-        let first = self.corners.first().copied().unwrap_or_default();
-        self.corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)))
+    fn bounds(&self) -> (D::Vec, D::Vec) {
+        let of =
+            |x: f64, y: f64, z: f64| D::Vec::from_slice(&[x, y, z][..D::N]).expect("one component per axis");
+        let low = self.corners.iter().copied().reduce(|a, b| a.min(b)).unwrap_or_default();
+        let high = self.corners.iter().copied().reduce(|a, b| a.max(b)).unwrap_or_default();
+        (of(low.x, low.y, -ENDLESS), of(high.x, high.y, ENDLESS))
     }
 }

@@ -7,16 +7,20 @@ use crate::scene::{Scene, WallSpec};
 use granular_io::Collection;
 use granular_io::figure::{Chain, Grain, GrainFigure, GrainPanel};
 use granular_io::vtk::{Points, read_vtp};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The file of an output that is nearest to a simulated time \[s\].
-fn nearest_frame(folder: &RunFolder, output: &str, time: f64) -> Result<Points, Failure> {
+pub(super) fn nearest_file(folder: &RunFolder, output: &str, time: f64) -> Result<PathBuf, Failure> {
     let list = folder.path().join(format!("{output}.pvd"));
     let files = Collection::open(&list)?;
     let distance = |entry: &&(f64, String)| (entry.0 - time).abs();
     let nearest = files.entries().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let (_, file) = nearest.ok_or_else(|| Failure::io(list.display(), "lists no files yet"))?;
-    Ok(read_vtp(&list.parent().unwrap_or(Path::new(".")).join(file))?)
+    Ok(list.parent().unwrap_or(Path::new(".")).join(file))
+}
+
+fn nearest_frame(folder: &RunFolder, output: &str, time: f64) -> Result<Points, Failure> {
+    Ok(read_vtp(&nearest_file(folder, output, time)?)?)
 }
 
 /// Grains at several times, coloured by a field.

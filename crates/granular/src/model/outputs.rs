@@ -2,8 +2,9 @@
 
 use super::{Problems, nearest};
 use crate::folder::RESERVED;
+use crate::observers::Line;
 use crate::scene::{EverySpec, FigureSpec, Scene, Writer};
-use granular_core::{ShownAs, Solver};
+use granular_core::{Location, ShownAs, Solver};
 use std::path::{Component, Path};
 
 /// Checks of schedules and files.
@@ -31,7 +32,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         let path = output.write.path();
         if check_path(&place, path, problems) {
             let files = match output.write {
-                Writer::Table { .. } => vec![path.to_owned()],
+                Writer::Table { .. } | Writer::Profile { .. } => vec![path.to_owned()],
                 Writer::Fields { .. } | Writer::Contacts { .. } => {
                     vec![path.to_owned(), format!("{path}.pvd")]
                 }
@@ -49,9 +50,17 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         }
         let (key, empty) = match figure {
             FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
-            FigureSpec::Flow { times, .. } => ("times", times.is_empty()),
+            FigureSpec::Flow { times, .. }
+            | FigureSpec::Map { times, .. }
+            | FigureSpec::Profile { times, .. } => ("times", times.is_empty()),
             _ => ("", false),
         };
+        if let FigureSpec::Map { range: Some(range), .. } = figure
+            && !matches!(range.as_slice(), [low, high] if low < high)
+        {
+            let allowed = "two values, the lower one first";
+            problems.add(format!("figures.{k}.range"), format!("{range:?}"), allowed, "");
+        }
         if empty {
             problems.add(format!("figures.{k}.{key}"), "empty", "at least one", "");
         }
@@ -91,7 +100,9 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Pro
     for (k, output) in scene.outputs.iter().enumerate() {
         let (key, kind) = match &output.write {
             Writer::Table { .. } => ("probes", ShownAs::Number),
-            Writer::Fields { .. } | Writer::Hdf5 { .. } => ("fields", ShownAs::Field),
+            Writer::Fields { .. } | Writer::Profile { .. } | Writer::Hdf5 { .. } => {
+                ("fields", ShownAs::Field)
+            }
             Writer::Contacts { .. } => ("fields", ShownAs::Link),
         };
         let names = output.write.names();
@@ -107,7 +118,42 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Pro
             }
         }
     }
+    check_lines(scene, solver, problems);
     check_figures(scene, &unknown, problems);
+}
+
+/// Whether lines of profiles lie in the grid.
+fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+    for (k, output) in scene.outputs.iter().enumerate() {
+        let Writer::Profile { from, to, points, .. } = &output.write else { continue };
+        let path = format!("outputs.{k}.write");
+        let Location::Grid { origin, spacing, cells } = solver.location() else {
+            problems.add(path, "a Profile of grains", "a Profile of a fluid", "Fields writes all grains");
+            continue;
+        };
+        let axes = if cells[2] > 1 { 3 } else { 2 };
+        if *points < 2 {
+            problems.add(format!("{path}.points"), points, "2 or more", "");
+        }
+        for (key, end) in [("from", from), ("to", to)] {
+            if end.len() != axes {
+                let allowed = format!("{axes} values, one per axis");
+                problems.add(format!("{path}.{key}"), format!("a list of {}", end.len()), allowed, "");
+            }
+        }
+        let reach = |axis: usize| {
+            let (low, size) = (origin[axis], spacing[axis] * cells[axis] as f64);
+            (low - 1e-9 * size, low + size + 1e-9 * size)
+        };
+        let outside = Line::of(from, to, (*points).clamp(2, 1000))
+            .points()
+            .iter()
+            .copied()
+            .find(|point| (0..axes).any(|axis| !(reach(axis).0..=reach(axis).1).contains(&point[axis])));
+        if let Some([x, y, z]) = outside {
+            problems.add(path, format!("({x}, {y}, {z}) m, outside the fluid"), "a line in the fluid", "");
+        }
+    }
 }
 
 /// Whether figures draw from outputs that hold what they need. Outputs with `unknown` names have

@@ -23,6 +23,7 @@ impl Writer {
             Self::Table { path, .. }
             | Self::Fields { path, .. }
             | Self::Contacts { path, .. }
+            | Self::Profile { path, .. }
             | Self::Hdf5 { path, .. } => path,
         }
     }
@@ -33,6 +34,7 @@ impl Writer {
             Self::Table { .. } => "Table",
             Self::Fields { .. } => "Fields",
             Self::Contacts { .. } => "Contacts",
+            Self::Profile { .. } => "Profile",
             Self::Hdf5 { .. } => "Hdf5",
         }
     }
@@ -43,6 +45,7 @@ impl Writer {
             Self::Table { probes: names, .. }
             | Self::Fields { fields: names, .. }
             | Self::Contacts { fields: names, .. }
+            | Self::Profile { fields: names, .. }
             | Self::Hdf5 { fields: names, .. } => names,
         }
     }
@@ -56,7 +59,10 @@ impl FigureSpec {
             | Self::Runout { path, .. }
             | Self::Energies { path, .. }
             | Self::Flow { path, .. }
-            | Self::ForceChains { path, .. } => path,
+            | Self::ForceChains { path, .. }
+            | Self::Map { path, .. }
+            | Self::Profile { path, .. }
+            | Self::Spectrum { path, .. } => path,
         }
     }
 
@@ -94,8 +100,30 @@ impl FigureSpec {
                 names: vec!["normal_force"],
                 stage: Some(stage),
             },
+            Self::Map { fields, color, stage, .. } => Need {
+                key: "fields",
+                writer: "Fields",
+                output: fields,
+                names: vec![color],
+                stage: Some(stage),
+            },
+            Self::Profile { profile, column, stage, .. } => Need {
+                key: "profile",
+                writer: "Profile",
+                output: profile,
+                names: vec![field_of(column)],
+                stage: Some(stage),
+            },
+            Self::Spectrum { table, column, stage, .. } => {
+                Need { key: "table", writer: "Table", output: table, names: vec![column], stage: Some(stage) }
+            }
         }
     }
+}
+
+/// The field of which a column of a profile is a component: `velocity` of `velocity_x`.
+fn field_of(column: &str) -> &str {
+    ["_x", "_y", "_z"].iter().find_map(|end| column.strip_suffix(end)).unwrap_or(column)
 }
 
 /// Columns that the figure of energies draws.

@@ -152,7 +152,9 @@ impl Collapse {
     fn stage(&self, scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<f64, Failure> {
         begin(model, index);
         match scene.stages[index].end {
-            End::For(time) => self.part(model, dt, time.value(), Vec::new()),
+            End::For(_) | End::Steady { .. } => {
+                self.part(model, dt, scene.stages[index].end.longest(), Vec::new())
+            }
             End::Quiet { kinetic_over_potential, within } => {
                 let rested = Arc::new(AtomicBool::new(false));
                 let rest = Rest::scheduled(kinetic_over_potential, within.value(), rested);

@@ -1,0 +1,118 @@
+//! Profiles and spectra of a fluid, from the files of a run.
+
+use super::spectrum::{Spectrum, spectrum};
+use super::{table_of, title};
+use crate::failure::Failure;
+use crate::folder::RunFolder;
+use crate::run::StageRecord;
+use crate::scene::fluid::ReferenceSpec;
+use crate::scene::{FigureSpec, Scene};
+use granular_io::Table;
+use granular_io::figure::{Axis, Chart, Series, Style};
+use serde_json::{Map, Value, json};
+
+/// Points of a curve that are drawn at most.
+const DRAWN: usize = 2000;
+
+/// What a figure of profiles shows.
+pub(super) struct ProfileFigure<'a> {
+    pub(super) column: &'a str,
+    pub(super) times: &'a [f64],
+    /// What distances \[m\] and values are divided by.
+    pub(super) length: Option<f64>,
+    pub(super) scale: Option<f64>,
+    pub(super) references: &'a [crate::scene::ReferenceCurve],
+}
+
+/// A column over the distance along its line at several times, with curves from elsewhere.
+pub(super) fn profile(scene: &Scene, table: &Table, record: &StageRecord, spec: &ProfileFigure<'_>) -> Chart {
+    let unit = table.unit(spec.column).unwrap_or("-");
+    let name = spec.column.replace('_', " ");
+    let (x, y) = match (spec.length, spec.scale) {
+        (Some(_), Some(_)) => {
+            ("distance over its length [-]".to_owned(), format!("{name} over its scale [-]"))
+        }
+        (Some(_), None) => ("distance over its length [-]".to_owned(), format!("{name} [{unit}]")),
+        (None, Some(_)) => ("distance [m]".to_owned(), format!("{name} over its scale [-]")),
+        (None, None) => ("distance [m]".to_owned(), format!("{name} [{unit}]")),
+    };
+    let heading = title(scene, &format!("{name} along a line"));
+    let mut chart = Chart::new(heading, Axis::linear(x), Axis::linear(y));
+    let column = |name| table.column(name).unwrap_or_default();
+    let (time, distance, values) = (column("time"), column("distance"), column(spec.column));
+    let (length, scale) = (spec.length.unwrap_or(1.0), spec.scale.unwrap_or(1.0));
+    for wanted in spec.times {
+        let wanted = record.start + wanted;
+        let nearest = time.iter().copied().min_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs()));
+        let Some(nearest) = nearest else { continue };
+        let at_time = (0..time.len()).filter(|row| time[*row] == nearest);
+        let points: Vec<[f64; 2]> =
+            at_time.map(|row| [distance[row] / length, values[row] / scale]).collect();
+        let label = format!("t = {:.3} s", nearest - record.start);
+        chart = chart.with(Series::new(label, points, Style::Line));
+    }
+    for reference in spec.references {
+        let points = reference.points.iter().map(|(x, y)| [*x, *y]).collect();
+        let style = if reference.line { Style::Dashed } else { Style::Markers };
+        chart = chart.with(Series::new(reference.label.clone(), points, style));
+    }
+    chart
+}
+
+/// The spectrum of a column from the start of a stage on.
+fn spectrum_of(table: &Table, column: &str, record: &StageRecord) -> Option<Spectrum> {
+    let (time, values) = (table.column("time")?, table.column(column)?);
+    let from = time.iter().position(|time| *time >= record.start)?;
+    spectrum(&time[from..], &values[from..])
+}
+
+/// A spectrum as a chart, over the Strouhal number with a reference.
+pub(super) fn spectrum_chart(
+    scene: &Scene,
+    table: &Table,
+    (column, record): (&str, &StageRecord),
+    reference: Option<ReferenceSpec>,
+) -> Result<Chart, Failure> {
+    let found = spectrum_of(table, column, record).ok_or_else(|| {
+        Failure::Io(format!(
+            "the series of `{column}` from stage `{}` on is too short for a spectrum",
+            record.name
+        ))
+    })?;
+    let unit = table.unit(column).unwrap_or("-");
+    let factor = reference.map_or(1.0, |reference| reference.length.value() / reference.speed.value());
+    let label = if reference.is_some() { "Strouhal number f L / U [-]" } else { "frequency [1/s]" };
+    let name = column.replace('_', " ");
+    let highest = found.points.iter().map(|point| point[1]).fold(0.0, f64::max);
+    // Beyond the last frequency with a thousandth of the peak there is nothing to see.
+    let last = found.points.iter().rposition(|point| point[1] > 1e-3 * highest).unwrap_or(0);
+    let shown = &found.points[1..(2 * last + 2).clamp(2, found.points.len())];
+    let thinned = shown.iter().step_by(shown.len().div_ceil(DRAWN)).map(|[f, a]| [f * factor, *a]);
+    let axes = (Axis::linear(label), Axis::log(format!("amplitude of the {name} [{unit}]")));
+    let heading = title(scene, &format!("spectrum of the {name}"));
+    let mut chart = Chart::new(heading, axes.0, axes.1).with(Series::new("", thinned.collect(), Style::Line));
+    if let Some(peak) = found.peak {
+        chart = chart.note(format!("highest peak at {:.4}", peak * factor));
+    }
+    Ok(chart)
+}
+
+/// Peaks of all spectra of a scene, by name.
+pub(super) fn peaks(
+    scene: &Scene,
+    folder: &RunFolder,
+    records: &[StageRecord],
+    metrics: &mut Map<String, Value>,
+) {
+    for figure in &scene.figures {
+        let FigureSpec::Spectrum { table, column, stage, reference, .. } = figure else { continue };
+        let record = records.iter().find(|record| record.name == *stage);
+        let (Some(record), Ok(table)) = (record, table_of(folder, table)) else { continue };
+        let Some(peak) = spectrum_of(&table, column, record).and_then(|found| found.peak) else { continue };
+        metrics.insert(format!("frequency_of_{column}"), json!(peak));
+        if let Some(reference) = reference {
+            let strouhal = peak * reference.length.value() / reference.speed.value();
+            metrics.insert(format!("strouhal_of_{column}"), json!(strouhal));
+        }
+    }
+}

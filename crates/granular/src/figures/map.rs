@@ -1,0 +1,119 @@
+//! Colour maps of a fluid, from the files of a run.
+
+use super::flow::nearest_file;
+use super::title;
+use crate::failure::Failure;
+use crate::folder::RunFolder;
+use crate::run::StageRecord;
+use crate::scene::fluid::{ObstacleSpec, ShapeSpec};
+use crate::scene::{Dimension, Scene};
+use granular_core::units::Length;
+use granular_io::figure::{MapFigure, MapPanel};
+use granular_io::vtk::{GridFields, read_vti};
+use std::f64::consts::TAU;
+
+/// Corners of the outline of a disk.
+const ROUND: usize = 72;
+
+/// What a map shows.
+pub(super) struct MapSpec<'a> {
+    pub(super) fields: &'a str,
+    pub(super) color: &'a str,
+    pub(super) diverging: bool,
+    pub(super) range: Option<[f64; 2]>,
+    pub(super) times: &'a [f64],
+}
+
+/// A field at several times, in the unit of length that suits the size of the fluid.
+pub(super) fn map(
+    scene: &Scene,
+    folder: &RunFolder,
+    record: &StageRecord,
+    spec: &MapSpec<'_>,
+) -> Result<MapFigure, Failure> {
+    let mut panels = Vec::new();
+    let mut grid = GridFields::default();
+    for time in spec.times {
+        let file = nearest_file(folder, spec.fields, record.start + time)?;
+        grid = read_vti(&file)?;
+        panels.push(panel(scene, &grid, record, spec));
+    }
+    let scale = if grid.spacing[0] * grid.cells[0] as f64 > 1.0 { 1.0 } else { 1e3 };
+    let unit = if scale > 1.0 { "mm" } else { "m" };
+    let upward = upward(scene);
+    let corner = |axis: usize, end: usize| {
+        scale * (grid.origin[axis] + if end == 1 { grid.spacing[axis] * grid.cells[axis] as f64 } else { 0.0 })
+    };
+    let corners = [0, 1].map(|end| [corner(0, end), corner(upward, end)]);
+    for panel in &mut panels {
+        panel.outlines.iter_mut().flatten().for_each(|point| *point = point.map(|x| scale * x));
+    }
+    let quantity = quantity(&grid, spec.color);
+    let mut figure = MapFigure::new(title(scene, &spec.color.replace('_', " ")), quantity, corners, panels);
+    figure.axes = [format!("x [{unit}]"), format!("{} [{unit}]", ["x", "y", "z"][upward])];
+    figure.diverging = spec.diverging;
+    figure.values = spec.range;
+    Ok(figure)
+}
+
+/// The axis drawn upwards.
+fn upward(scene: &Scene) -> usize {
+    match scene.dimension {
+        Dimension::Plane => 1,
+        Dimension::Space => 2,
+    }
+}
+
+fn quantity(grid: &GridFields, color: &str) -> String {
+    let unit = match color {
+        "pressure" => "Pa",
+        "velocity" | "speed" => "m/s",
+        "vorticity" => "1/s",
+        _ => return color.replace('_', " "),
+    };
+    let is_vector = grid.fields.iter().any(|(name, components, _)| name == color && *components > 1);
+    let name = if color == "velocity" && is_vector { "speed" } else { color };
+    format!("{name} [{unit}]")
+}
+
+/// One time: the plane of the fluid, or its middle layer along y in space.
+fn panel(scene: &Scene, grid: &GridFields, record: &StageRecord, spec: &MapSpec<'_>) -> MapPanel {
+    let values = grid.magnitude(spec.color).unwrap_or_default();
+    let solid = grid.magnitude("solid").unwrap_or_default();
+    // Covered cells have no flow.
+    let is_solid = |index: usize| solid.get(index).is_some_and(|number| *number > 0.0);
+    let values: Vec<f64> =
+        values.iter().enumerate().map(|(k, value)| if is_solid(k) { f64::NAN } else { *value }).collect();
+    let (normal, index) = match scene.dimension {
+        Dimension::Plane => (2, 0),
+        Dimension::Space => (1, grid.cells[1] / 2),
+    };
+    let (values, cells) = grid.layer(&values, normal, index);
+    let label = format!("t = {:.4} s", grid.time - record.start);
+    let obstacles = scene.fluid.iter().flat_map(|fluid| &fluid.obstacles);
+    // Those that move show by their cells.
+    let outlines = obstacles.filter(|obstacle| obstacle.path.is_none()).map(|body| outline(scene, body));
+    MapPanel { label, cells, values, outlines: outlines.collect() }
+}
+
+/// The outline of an obstacle in the plane that is drawn \[m\].
+fn outline(scene: &Scene, obstacle: &ObstacleSpec) -> Vec<[f64; 2]> {
+    let upward = upward(scene);
+    let of = |values: &[Length]| [0, upward].map(|axis| values.get(axis).map_or(0.0, |x| x.value()));
+    match &obstacle.shape {
+        ShapeSpec::Ball { centre, radius } => {
+            let [x, y] = of(centre);
+            let corner = |k| {
+                let (sine, cosine) = (TAU * k as f64 / ROUND as f64).sin_cos();
+                [x + radius.value() * cosine, y + radius.value() * sine]
+            };
+            (0..ROUND).map(corner).collect()
+        }
+        ShapeSpec::Block { low, high } => {
+            let ([a, b], [c, d]) = (of(low), of(high));
+            vec![[a, b], [c, b], [c, d], [a, d]]
+        }
+        ShapeSpec::Polygon(_) if scene.dimension == Dimension::Space => Vec::new(),
+        ShapeSpec::Polygon(corners) => corners.iter().map(|corner| of(corner)).collect(),
+    }
+}

@@ -1,0 +1,141 @@
+//! A fluid for the lattice Boltzmann method.
+
+mod read;
+
+use super::{Action, Model, Problems, outputs};
+use crate::scene::{Change, End, Scene};
+use crate::scene_file::SceneProblem;
+use granular_core::{Dim, Simulation, Vector};
+use granular_coupling::{CarriedObstacles, PrescribedMotion};
+use granular_lbm::spec::{LbmSpec, PrecisionSpec};
+use granular_lbm::{D2Q9, D3Q19, Lattice, Lbm, Real};
+use read::{Fluid, Reader};
+use std::any::Any;
+
+/// Builds the simulation of a scene of a fluid.
+pub(super) fn build<L: Lattice<Q>, const Q: usize>(
+    scene: &Scene,
+    name: &str,
+    spec: &LbmSpec,
+    mut problems: Problems,
+) -> Result<Model, Vec<SceneProblem>> {
+    refuse_grains(scene, name, &mut problems);
+    let stages = actions::<L::Dim>(scene, &mut problems);
+    let fluid = match &scene.fluid {
+        Some(fluid) => Reader { scene, fluid, spec, name, problems: &mut problems }.read::<L::Dim>(),
+        None => {
+            let hint = "add fluid: (size: [\"1 m\", \"1 m\"], viscosity: \"1e-6 m^2/s\")";
+            problems.add("fluid", "missing", "the fluid that the method solves", hint);
+            None
+        }
+    };
+    let Some(fluid) = fluid.filter(|_| problems.0.is_empty()) else { return Err(problems.0) };
+    let simulation = match spec.precision {
+        PrecisionSpec::Double => simulation::<L, f64, Q>(name, fluid),
+        PrecisionSpec::Single => simulation::<L, f32, Q>(name, fluid),
+    };
+    let simulation = simulation.map_err(|problem| vec![*problem])?;
+    outputs::check_names(scene, simulation.solver(), &mut problems);
+    if !problems.0.is_empty() {
+        return Err(problems.0);
+    }
+    Ok(Model { simulation, stages, time_step: None, column: None, up: L::Dim::UP })
+}
+
+/// What belongs to grains only.
+fn refuse_grains(scene: &Scene, name: &str, problems: &mut Problems) {
+    let hint = format!("`{name}` is Lbm, which solves a fluid only");
+    let given = [
+        ("sample", scene.sample.is_some()),
+        ("materials", !scene.materials.is_empty()),
+        ("walls", !scene.walls.is_empty()),
+    ];
+    for (key, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
+        problems.add(key, "given", format!("no {key}"), hint.clone());
+    }
+    for (k, stage) in scene.stages.iter().enumerate() {
+        if let End::Quiet { .. } = stage.end {
+            problems.add(format!("stages.{k}.end"), "Quiet, which is for grains", "For or Steady", "");
+        }
+        if stage.time_step.is_some() {
+            let hint = format!("set solvers.{name}.step");
+            let allowed = "no step of its own: that of the lattice is tied to its cells";
+            problems.add(format!("stages.{k}.time_step"), "given", allowed, hint);
+        }
+    }
+}
+
+fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Vec<Vec<Action>> {
+    let mut stages = Vec::new();
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let mut list = Vec::new();
+        for (c, change) in stage.changes.iter().enumerate() {
+            let path = format!("stages.{k}.changes.{c}");
+            match change {
+                Change::Gravity(values) => {
+                    problems.vector::<D, _>(&path, values);
+                    list.push(Action::Gravity(values.iter().map(|value| value.value()).collect()));
+                }
+                _ => problems.add(path, "a change of grains or walls", "Gravity, for a fluid", ""),
+            }
+        }
+        stages.push(list);
+    }
+    stages
+}
+
+/// The lattice, with the paths of obstacles that move coupled to it.
+fn simulation<L: Lattice<Q>, T: Real, const Q: usize>(
+    name: &str,
+    fluid: Fluid<L::Dim>,
+) -> Result<Simulation, Box<SceneProblem>> {
+    let refuse = |path: &str, value: String, allowed: String| {
+        Box::new(SceneProblem::at_path(path.to_owned(), value, allowed, ""))
+    };
+    let mut lbm = Lbm::<L, Q, T>::new(fluid.setup).map_err(|error| {
+        refuse("fluid", format!("{} is {}", error.what, error.value), error.allowed.clone())
+    })?;
+    for (k, obstacle) in lbm.setup().obstacles.iter().enumerate() {
+        if lbm.cells_in(k) == 0 {
+            let value = format!("`{}`, which covers the centre of no cell", obstacle.name);
+            let allowed = "an obstacle in the box, of several cells".to_owned();
+            return Err(refuse(&format!("fluid.obstacles.{k}.shape"), value, allowed));
+        }
+    }
+    let start = fluid.start;
+    lbm.set_flow(move |point| granular_lbm::Flow { pressure: 0.0, velocity: start(point) });
+    let mut simulation = Simulation::named(name, Box::new(lbm));
+    if fluid.bodies.is_empty() {
+        return Ok(simulation);
+    }
+    let (numbers, bodies) = fluid.bodies.into_iter().unzip();
+    let motion = PrescribedMotion::new(bodies)
+        .map_err(|error| refuse("fluid.obstacles", error.to_string(), error.allowed.to_owned()))?;
+    let coupled = (|| {
+        let water = simulation.find::<Lbm<L, Q, T>>(name).expect("the lattice was just put there");
+        let motion = simulation.add("paths of obstacles", motion)?;
+        simulation.couple(water, motion, CarriedObstacles::<L::Dim>::numbered(numbers))
+    })();
+    coupled.map_err(|error: granular_core::CouplingError| {
+        refuse("fluid.obstacles", error.to_string(), "paths that fit the fluid".to_owned())
+    })?;
+    Ok(simulation)
+}
+
+/// Makes a change, if the solver is of this method.
+pub(super) fn apply(action: &Action, solver: &mut dyn Any) {
+    let Action::Gravity(values) = action else { return };
+    if let Some(lbm) = solver.downcast_mut::<Lbm<D2Q9, 9, f64>>() {
+        set_acceleration(lbm, values);
+    } else if let Some(lbm) = solver.downcast_mut::<Lbm<D2Q9, 9, f32>>() {
+        set_acceleration(lbm, values);
+    } else if let Some(lbm) = solver.downcast_mut::<Lbm<D3Q19, 19, f64>>() {
+        set_acceleration(lbm, values);
+    } else if let Some(lbm) = solver.downcast_mut::<Lbm<D3Q19, 19, f32>>() {
+        set_acceleration(lbm, values);
+    }
+}
+
+fn set_acceleration<L: Lattice<Q>, T: Real, const Q: usize>(lbm: &mut Lbm<L, Q, T>, values: &[f64]) {
+    lbm.set_acceleration(Vector::from_slice(values).expect("the number of axes was checked at build"));
+}

@@ -1,0 +1,414 @@
+//! What a scene says of a fluid, in the terms of the lattice.
+
+use super::super::Problems;
+use crate::scene::Scene;
+use crate::scene::fluid::{
+    FaceSpec, FacesSpec, FluidSpec, ObstacleSpec, PathSpec, ProfileSpec, ShapeSpec, StartSpec, SurfaceSpec,
+};
+use granular_core::units::{AngularVelocity, Measured, Unit, Velocity};
+use granular_core::{Dim, Linear, Spin, Vector};
+use granular_coupling::{Body, Path};
+use granular_lbm::spec::{LbmSpec, StepSpec};
+use granular_lbm::{
+    Ball, Block, Face, Gauge, Obstacle, OpenScheme, Polygon, Profile, Reference, Setup, Shape, WallScheme,
+};
+use std::sync::Arc;
+
+/// How far a size over the spacing may be off a whole number.
+const FIT: f64 = 1e-6;
+
+/// Velocities over places.
+type Field<D> = Arc<dyn Fn(<D as Dim>::Vec) -> <D as Dim>::Vec + Send + Sync>;
+
+/// A fluid, ready for the lattice.
+pub(super) struct Fluid<D: Dim> {
+    pub(super) setup: Setup<D>,
+    pub(super) start: Field<D>,
+    /// Numbers of the obstacles that move, with their paths.
+    pub(super) bodies: Vec<(usize, Body<D>)>,
+}
+
+pub(super) struct Reader<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) fluid: &'a FluidSpec,
+    pub(super) spec: &'a LbmSpec,
+    pub(super) name: &'a str,
+    pub(super) problems: &'a mut Problems,
+}
+
+/// A box in the scene.
+#[derive(Clone, Copy)]
+struct Extent<D: Dim> {
+    low: D::Vec,
+    size: D::Vec,
+}
+
+impl Reader<'_> {
+    pub(super) fn read<D: Dim>(&mut self) -> Option<Fluid<D>> {
+        self.check_positive();
+        let extent = self.extent::<D>()?;
+        let faces = self.faces(extent);
+        let (cells, origin) = self.cells(extent, &faces)?;
+        let gravity = match self.scene.gravity.as_slice() {
+            [] => Some(D::Vec::ZERO),
+            values => self.problems.vector::<D, _>("gravity", values),
+        };
+        let mut obstacles = Vec::new();
+        let mut bodies = Vec::new();
+        for (k, spec) in self.fluid.obstacles.iter().enumerate() {
+            let (obstacle, path) = self.obstacle::<D>(k, spec)?;
+            obstacles.push(obstacle);
+            bodies.extend(path.map(|body| (k, body)));
+        }
+        let start = self.start::<D>(&faces)?;
+        let gauges = self.gauges::<D>();
+        let mut setup = Setup::new(cells, self.spec.spacing.value(), self.fluid.viscosity.value(), 1.0);
+        setup.origin = origin;
+        setup.density = self.fluid.density.value();
+        setup.acceleration = gravity?;
+        setup.operator = self.spec.operator.into();
+        setup.smagorinsky = self.spec.smagorinsky;
+        setup.faces = faces;
+        setup.obstacles = obstacles;
+        setup.gauges = gauges;
+        let named = bodies.iter().map(|(_, body)| body.fastest());
+        let named = named.chain([self.largest_speed::<D>()]);
+        let speed = self.fluid.largest_speed.map(|speed| speed.value());
+        setup.expected_speed = speed.unwrap_or(named.fold(0.0, f64::max));
+        setup.time_step = self.time_step(setup.expected_speed)?;
+        Some(Fluid { setup, start, bodies })
+    }
+
+    fn check_positive(&mut self) {
+        let (fluid, solver) = (self.fluid, self.name);
+        if fluid.viscosity.value() <= 0.0 {
+            self.problems.add("fluid.viscosity", fluid.viscosity, "above 0", "");
+        }
+        if fluid.density.value() <= 0.0 {
+            self.problems.add("fluid.density", fluid.density, "above 0", "");
+        }
+        if let Some(speed) = fluid.largest_speed.filter(|speed| speed.value() <= 0.0) {
+            self.problems.add("fluid.largest_speed", speed, "above 0", "");
+        }
+        if self.spec.spacing.value() <= 0.0 {
+            self.problems.add(format!("solvers.{solver}.spacing"), self.spec.spacing, "above 0", "");
+        }
+        if let Some(constant) = self.spec.smagorinsky.filter(|constant| *constant < 0.0) {
+            self.problems.add(
+                format!("solvers.{solver}.smagorinsky"),
+                constant,
+                "0 or more",
+                "0.1 is common",
+            );
+        }
+    }
+
+    fn extent<D: Dim>(&mut self) -> Option<Extent<D>> {
+        let low = match self.fluid.low.as_slice() {
+            [] => Some(D::Vec::ZERO),
+            values => self.problems.vector::<D, _>("fluid.low", values),
+        };
+        let size = self.problems.vector::<D, _>("fluid.size", &self.fluid.size)?;
+        if let Some(axis) = (0..D::N).find(|axis| size.component(*axis) <= 0.0) {
+            let value = self.fluid.size[axis];
+            self.problems.add(format!("fluid.size.{axis}"), value, "a positive length", "");
+            return None;
+        }
+        Some(Extent { low: low?, size })
+    }
+
+    /// Cells along each axis and the corner of the first. Velocities and pressures are given at the centres of the
+    /// outermost cells: along an axis that is open at both ends these lie on the faces of the box.
+    fn cells<D: Dim>(
+        &mut self,
+        extent: Extent<D>,
+        faces: &[[Face<D>; 2]; 3],
+    ) -> Option<([usize; 3], D::Vec)> {
+        let spacing = self.spec.spacing.value();
+        let (mut cells, mut origin) = ([1; 3], extent.low);
+        for axis in 0..D::N {
+            let size = extent.size.component(axis);
+            let count = (size / spacing).round().max(1.0);
+            if !(spacing > 0.0 && count < 1e9) || (size / spacing - count).abs() > FIT * count {
+                let value = format!("{spacing} m, which does not divide fluid.size.{axis} of {size} m");
+                let hint = format!("{} m does", size / count);
+                let path = format!("solvers.{}.spacing", self.name);
+                self.problems.add(path, value, "a length that divides all sizes", hint);
+                return None;
+            }
+            cells[axis] = count as usize;
+            let is_open = |face: &Face<D>| matches!(face, Face::Velocity(..) | Face::Pressure(..));
+            if faces[axis].iter().all(is_open) {
+                cells[axis] += 1;
+                origin -= D::Vec::along(axis, 0.5 * spacing);
+            }
+        }
+        Some((cells, origin))
+    }
+
+    fn faces<D: Dim>(&mut self, extent: Extent<D>) -> [[Face<D>; 2]; 3] {
+        let specs = self.fluid.faces.clone();
+        let names: [[&str; 2]; 3] = match D::N {
+            2 => [["left", "right"], ["bottom", "top"], ["front", "back"]],
+            _ => [["left", "right"], ["front", "back"], ["bottom", "top"]],
+        };
+        let of = |name| match name {
+            "left" => &specs.left,
+            "right" => &specs.right,
+            "front" => &specs.front,
+            "back" => &specs.back,
+            "bottom" => &specs.bottom,
+            _ => &specs.top,
+        };
+        std::array::from_fn(|axis| {
+            [0, 1].map(|side| {
+                let name = names[axis][side];
+                match of(name) {
+                    Some(_) if axis >= D::N => {
+                        let path = format!("fluid.faces.{name}");
+                        self.problems.add(path, "given", "left, right, bottom and top in the plane", "");
+                        Face::Periodic
+                    }
+                    Some(spec) => self.face(spec, name, (axis, side), extent).unwrap_or(Face::Periodic),
+                    None => Face::Periodic,
+                }
+            })
+        })
+    }
+
+    fn face<D: Dim>(
+        &mut self,
+        spec: &FaceSpec,
+        name: &str,
+        (axis, side): (usize, usize),
+        extent: Extent<D>,
+    ) -> Option<Face<D>> {
+        let path = format!("fluid.faces.{name}");
+        Some(match spec {
+            FaceSpec::Periodic => Face::Periodic,
+            FaceSpec::Wall => Face::Wall(D::Vec::ZERO),
+            FaceSpec::MovingWall(velocity) => Face::Wall(self.problems.vector::<D, _>(&path, velocity)?),
+            FaceSpec::FreeSlip => Face::FreeSlip,
+            FaceSpec::Inflow(ProfileSpec::Uniform(velocity)) => {
+                let velocity = self.problems.vector::<D, _>(&path, velocity)?;
+                Face::Velocity(Profile::uniform(velocity), OpenScheme::Regularised)
+            }
+            FaceSpec::Inflow(ProfileSpec::Parabola { peak }) => {
+                let way = if side == 0 { 1.0 } else { -1.0 };
+                let peak = D::Vec::along(axis, way * peak.value());
+                let parabola = move |point: D::Vec| {
+                    let share = (0..D::N).filter(|other| *other != axis).map(|other| {
+                        let at = (point - extent.low).component(other) / extent.size.component(other);
+                        4.0 * at * (1.0 - at)
+                    });
+                    peak * share.product::<f64>()
+                };
+                Face::Velocity(Profile::new(parabola), OpenScheme::Regularised)
+            }
+            FaceSpec::Outflow(pressure) => Face::Pressure(pressure.value(), OpenScheme::Regularised),
+        })
+    }
+
+    /// Largest speed that faces and the start name \[m/s\].
+    fn largest_speed<D: Dim>(&self) -> f64 {
+        let FacesSpec { left, right, front, back, bottom, top } = &self.fluid.faces;
+        let length = |velocity: &[Velocity]| vector_of::<D, _>(velocity).map_or(0.0, Linear::length);
+        let faces = [left, right, front, back, bottom, top].into_iter().flatten().map(|face| match face {
+            FaceSpec::MovingWall(velocity) | FaceSpec::Inflow(ProfileSpec::Uniform(velocity)) => {
+                length(velocity)
+            }
+            FaceSpec::Inflow(ProfileSpec::Parabola { peak }) => peak.value().abs(),
+            _ => 0.0,
+        });
+        let start = match &self.fluid.start {
+            StartSpec::Uniform(velocity) => length(velocity),
+            _ => 0.0,
+        };
+        faces.fold(start, f64::max)
+    }
+
+    fn start<D: Dim>(&mut self, faces: &[[Face<D>; 2]; 3]) -> Option<Field<D>> {
+        Some(match &self.fluid.start {
+            StartSpec::Rest => Arc::new(|_| D::Vec::ZERO),
+            StartSpec::Uniform(velocity) => {
+                let velocity = self.problems.vector::<D, _>("fluid.start", velocity)?;
+                Arc::new(move |_| velocity)
+            }
+            StartSpec::LikeInflow => match &faces[0][0] {
+                Face::Velocity(profile, _) => {
+                    let profile = profile.clone();
+                    Arc::new(move |point| profile.at(point))
+                }
+                _ => {
+                    let value = "LikeInflow without an Inflow";
+                    self.problems.add("fluid.start", value, "an Inflow at fluid.faces.left", "");
+                    return None;
+                }
+            },
+        })
+    }
+
+    fn gauges<D: Dim>(&mut self) -> Vec<Gauge<D>> {
+        let mut gauges = Vec::new();
+        for (name, place) in &self.fluid.gauges {
+            let place = self.problems.vector::<D, _>(&format!("fluid.gauges.{name}"), place);
+            gauges.extend(place.map(|place| Gauge { name: name.clone(), place }));
+        }
+        gauges
+    }
+
+    fn time_step(&mut self, speed: f64) -> Option<f64> {
+        let path = format!("solvers.{}.step", self.name);
+        match self.spec.step {
+            StepSpec::Mach(mach) if mach.is_nan() || mach <= 0.0 => {
+                self.problems.add(path, mach, "above 0 and at most 0.3", "");
+            }
+            StepSpec::Mach(_) if speed <= 0.0 => {
+                let hint = "set fluid.largest_speed, or step: RelaxationTime(0.8)";
+                let value = "a Mach number of a flow whose speed nothing names";
+                self.problems.add(path, value, "a step for a known speed", hint);
+            }
+            StepSpec::RelaxationTime(tau) if tau.is_nan() || tau <= 0.5 => {
+                self.problems.add(path, tau, "above 0.5 steps", "0.6 to 1 is common");
+            }
+            StepSpec::Time(time) if time.value() <= 0.0 => {
+                self.problems.add(path, time, "a positive time", "");
+            }
+            _ => return Some(self.spec.time_step(self.fluid.viscosity.value(), speed)),
+        }
+        None
+    }
+}
+
+/// Obstacles.
+impl Reader<'_> {
+    fn obstacle<D: Dim>(
+        &mut self,
+        number: usize,
+        spec: &ObstacleSpec,
+    ) -> Option<(Obstacle<D>, Option<Body<D>>)> {
+        let path = format!("fluid.obstacles.{number}");
+        let before = &self.fluid.obstacles[..number];
+        if before.iter().any(|other| other.name == spec.name) {
+            self.problems.add(
+                format!("{path}.name"),
+                format!("`{}` again", spec.name),
+                "a name of its own",
+                "",
+            );
+        }
+        let shape = self.shape::<D>(&format!("{path}.shape"), &spec.shape)?;
+        let spin = self.spin::<D>(&format!("{path}.spin"), &spec.spin)?;
+        let body = match &spec.path {
+            Some(way) => Some(self.body(&path, way, &spec.shape, spin)?),
+            None => None,
+        };
+        let motion = body.map(|body: Body<D>| body.motion(0.0));
+        let reference = spec
+            .reference
+            .map(|reference| Reference { speed: reference.speed.value(), length: reference.length.value() });
+        if let Some(Reference { speed, length }) = reference
+            && !(speed > 0.0 && length > 0.0)
+        {
+            self.problems.add(format!("{path}.reference"), format!("{speed} m/s, {length} m"), "above 0", "");
+        }
+        let centre = shape.centre();
+        let obstacle = Obstacle {
+            name: spec.name.clone(),
+            displacement: motion.map_or(D::Vec::ZERO, |motion| motion.position - centre),
+            velocity: motion.map_or(D::Vec::ZERO, |motion| motion.velocity),
+            shape,
+            wall: match spec.surface {
+                SurfaceSpec::Interpolated => WallScheme::Bouzidi,
+                SurfaceSpec::Yu => WallScheme::Yu,
+                SurfaceSpec::HalfWay => WallScheme::HalfWay,
+            },
+            spin,
+            reference,
+        };
+        Some((obstacle, body))
+    }
+
+    fn shape<D: Dim>(&mut self, path: &str, spec: &ShapeSpec) -> Option<Arc<dyn Shape<D>>> {
+        match spec {
+            ShapeSpec::Ball { centre, radius } => {
+                let centre = self.problems.vector::<D, _>(&format!("{path}.centre"), centre);
+                let radius = radius.value();
+                if radius <= 0.0 {
+                    self.problems.add(format!("{path}.radius"), format!("{radius} m"), "above 0", "");
+                    return None;
+                }
+                Some(Arc::new(Ball { centre: centre?, radius }))
+            }
+            ShapeSpec::Block { low, high } => {
+                let low = self.problems.vector::<D, _>(&format!("{path}.low"), low);
+                let high = self.problems.vector::<D, _>(&format!("{path}.high"), high);
+                let (low, high): (D::Vec, D::Vec) = (low?, high?);
+                if (0..D::N).any(|axis| low.component(axis) >= high.component(axis)) {
+                    let allowed = "above low along every axis";
+                    self.problems.add(format!("{path}.high"), "not above low", allowed, "");
+                    return None;
+                }
+                Some(Arc::new(Block { low, high }))
+            }
+            ShapeSpec::Polygon(corners) => {
+                let corner = |(k, corner): (usize, &Vec<_>)| {
+                    self.problems.vector::<granular_core::D2, _>(&format!("{path}.Polygon.{k}"), corner)
+                };
+                let corners: Vec<_> = corners.iter().enumerate().map(corner).collect::<Option<_>>()?;
+                if corners.len() < 3 {
+                    let value = format!("a Polygon of {} corners", corners.len());
+                    self.problems.add(path, value, "three corners or more", "");
+                    return None;
+                }
+                Some(Arc::new(Polygon { corners }))
+            }
+        }
+    }
+
+    fn spin<D: Dim>(&mut self, path: &str, values: &[AngularVelocity]) -> Option<D::Spin> {
+        let numbers: Vec<f64> = values.iter().map(|value| value.value()).collect();
+        match (D::N, numbers.as_slice()) {
+            (_, []) => Some(D::Spin::ZERO),
+            (2, [rate]) => Some(D::Spin::about_z(*rate)),
+            (3, [x, y, z]) => Some(D::Spin::of_components([*x, *y, *z])),
+            _ => {
+                let allowed = "one value in the plane, three components in space";
+                self.problems.add(path, format!("a list of {}", values.len()), allowed, "");
+                None
+            }
+        }
+    }
+
+    fn body<D: Dim>(
+        &mut self,
+        path: &str,
+        way: &PathSpec,
+        shape: &ShapeSpec,
+        spin: D::Spin,
+    ) -> Option<Body<D>> {
+        let place = format!("{path}.path");
+        let ShapeSpec::Ball { centre, radius } = shape else {
+            self.problems.add(place, "the path of a shape with corners", "a path of a Ball", "");
+            return None;
+        };
+        let way = match way {
+            PathSpec::Steady(velocity) => Path::Steady(self.problems.vector::<D, _>(&place, velocity)?),
+            PathSpec::Oscillation { amplitude, frequency, phase } => Path::Oscillation {
+                amplitude: self.problems.vector::<D, _>(&format!("{place}.amplitude"), amplitude)?,
+                frequency: frequency.value(),
+                phase: *phase,
+            },
+            PathSpec::Orbit { centre, rate } => Path::Orbit {
+                centre: self.problems.vector::<D, _>(&format!("{place}.centre"), centre)?,
+                rate: self.spin::<D>(&format!("{place}.rate"), rate)?,
+            },
+        };
+        let centre = vector_of::<D, _>(centre)?;
+        Some(Body { place: centre, radius: radius.value(), path: way, spin })
+    }
+}
+
+fn vector_of<D: Dim, U: Unit>(values: &[Measured<U>]) -> Option<D::Vec> {
+    D::Vec::from_slice(&values.iter().map(|value| value.value()).collect::<Vec<_>>())
+}

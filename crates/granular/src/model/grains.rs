@@ -1,0 +1,229 @@
+//! Grains and walls for the discrete element method.
+
+use super::walls::{self, Beside};
+use super::{Action, Model, Problems, nearest, outputs, sample};
+use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
+use crate::scene_file::SceneProblem;
+use granular_core::units::Acceleration;
+use granular_core::{D2, D3, Dim, Simulation, Vector};
+use granular_dem::spec::DemSpec;
+use granular_dem::{Dem, MaterialId, Materials, Setup};
+use std::any::Any;
+use std::collections::BTreeMap;
+
+/// Materials of a scene, by name.
+#[derive(Debug, Default)]
+pub(crate) struct NamedMaterials {
+    pub(crate) list: Materials,
+    /// None for a material that was refused, so that its users are not blamed too.
+    ids: BTreeMap<String, Option<MaterialId>>,
+}
+
+impl NamedMaterials {
+    fn of(scene: &Scene, problems: &mut Problems) -> Self {
+        let mut named = Self::default();
+        for (name, &spec) in &scene.materials {
+            let added = named.list.add(spec.into()).map_err(|error| {
+                let key = error.what.replace(' ', "_");
+                problems.add(format!("materials.{}.{key}", quoted(name)), error.value, error.allowed, "");
+            });
+            named.ids.insert(name.clone(), added.ok());
+        }
+        named
+    }
+
+    pub(crate) fn find(&self, path: &str, name: &str, problems: &mut Problems) -> Option<MaterialId> {
+        let found = self.ids.get(name).copied();
+        if found.is_none() {
+            let known: Vec<&str> = self.ids.keys().map(String::as_str).collect();
+            let hint = nearest(name, known.iter().copied());
+            let allowed = format!("a material of this scene: {}", known.join(", "));
+            problems.add(path, format!("`{name}`, which is no material of this scene"), allowed, hint);
+        }
+        found.flatten()
+    }
+}
+
+/// A key as a scene path writes it: one with a dot needs quotes.
+fn quoted(key: &str) -> String {
+    if key.contains(['.', '=', '[']) { format!("\"{key}\"") } else { key.to_owned() }
+}
+
+/// Builds the simulation of a scene of grains.
+pub(super) fn build<D: Dim>(
+    scene: &Scene,
+    name: &str,
+    spec: &DemSpec,
+    mut problems: Problems,
+) -> Result<Model, Vec<SceneProblem>> {
+    if scene.fluid.is_some() {
+        problems.add("fluid", "given", "no fluid", format!("`{name}` is Dem, which solves grains only"));
+    }
+    let gravity = if scene.gravity.is_empty() {
+        Some(D::Vec::default())
+    } else {
+        problems.vector::<D, _>("gravity", &scene.gravity)
+    };
+    let materials = NamedMaterials::of(scene, &mut problems);
+    let sample = match &scene.sample {
+        Some(sample) => sample::grains::<D>(sample, &materials, &mut problems),
+        None => {
+            problems.add("sample", "missing", "the grains, such as a Column", "");
+            None
+        }
+    };
+    let column = sample.as_ref().and_then(|sample| sample.column);
+    // A column that cannot be built has been blamed already; the walls beside it are not.
+    let beside = match (&sample, &scene.sample) {
+        (None, Some(Sample::Column { .. }) | None) => Beside::Unknown,
+        _ => column.map_or(Beside::Nothing, Beside::Column),
+    };
+    let walls = walls::walls::<D>(&scene.walls, beside, &materials, &mut problems);
+    let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
+    check_wall_names(scene, walls.list.iter().map(|wall| wall.name.as_str()).collect(), &mut problems);
+    check_spec(name, spec, &mut problems);
+    let (Some(gravity), Some(sample), true) = (gravity, sample, problems.0.is_empty()) else {
+        return Err(problems.0);
+    };
+    let setup = Setup {
+        materials: materials.list,
+        grains: sample.grains,
+        walls: walls.list,
+        gravity,
+        options: spec.options(needs_ledger(scene)),
+    };
+    let dem = Dem::<D>::new(setup).map_err(|error| {
+        vec![SceneProblem::at_path(format!("solvers.{name}"), error.to_string(), error.allowed, "")]
+    })?;
+    outputs::check_names(scene, &dem, &mut problems);
+    if !problems.0.is_empty() {
+        return Err(problems.0);
+    }
+    Ok(Model {
+        simulation: Simulation::named(name, Box::new(dem)),
+        stages,
+        time_step: spec.time_step.map(|step| step.value()),
+        column,
+        up: D::UP,
+    })
+}
+
+fn check_wall_names(scene: &Scene, names: Vec<&str>, problems: &mut Problems) {
+    for (k, name) in names.iter().enumerate() {
+        if names[..k].contains(name) {
+            problems.add("walls", format!("two walls called `{name}`"), "walls with names of their own", "");
+        }
+    }
+    for (k, stage) in scene.stages.iter().enumerate() {
+        for (c, change) in stage.changes.iter().enumerate() {
+            let (Change::Open(name) | Change::Close(name)) = change else { continue };
+            if !names.contains(&name.as_str()) {
+                let path = format!("stages.{k}.changes.{c}");
+                problems.add(
+                    path,
+                    format!("`{name}`"),
+                    names.join(", "),
+                    nearest(name, names.iter().copied()),
+                );
+            }
+        }
+    }
+}
+
+fn check_spec(name: &str, spec: &DemSpec, problems: &mut Problems) {
+    let positive = "a positive time";
+    if let Some(step) = spec.time_step.filter(|step| step.value() <= 0.0) {
+        problems.add(format!("solvers.{name}.time_step"), step, positive, "");
+    }
+    if spec.steps_per_contact < 1.0 {
+        problems.add(format!("solvers.{name}.steps_per_contact"), spec.steps_per_contact, "1 or more", "");
+    }
+    if spec.skin <= 0.0 {
+        problems.add(format!("solvers.{name}.skin"), spec.skin, "above 0", "");
+    }
+}
+
+/// Whether anything asks for losses of energy.
+fn needs_ledger(scene: &Scene) -> bool {
+    let asks = |probes: &[String]| probes.iter().any(|p| p.starts_with("loss_") || p == "energy_residual");
+    let in_tables = scene.outputs.iter().any(|output| match &output.write {
+        Writer::Table { probes, .. } => asks(probes),
+        _ => false,
+    });
+    in_tables || scene.figures.iter().any(|figure| matches!(figure, FigureSpec::Energies { .. }))
+}
+
+/// What each stage does at its start.
+fn actions<D: Dim>(
+    scene: &Scene,
+    openings: &[(String, String, String)],
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Vec<Vec<Action>> {
+    for (path, _, stage) in openings {
+        if !scene.stages.is_empty() && !scene.stages.iter().any(|other| other.name == *stage) {
+            let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+            let hint = nearest(stage, known.iter().copied());
+            problems.add(
+                format!("{path}.opens"),
+                format!("`{stage}`, which is no stage of this scene"),
+                format!("a stage of this scene: {}", known.join(", ")),
+                hint,
+            );
+        }
+    }
+    let mut stages = Vec::new();
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let opened = openings.iter().filter(|(.., at)| *at == stage.name);
+        let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
+        for (c, change) in stage.changes.iter().enumerate() {
+            let path = format!("stages.{k}.changes.{c}");
+            list.extend(action::<D>(&path, change, materials, problems));
+        }
+        stages.push(list);
+    }
+    stages
+}
+
+fn action<D: Dim>(
+    path: &str,
+    change: &Change,
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Option<Action> {
+    Some(match change {
+        Change::Friction { material, value } => {
+            if !(*value >= 0.0 && value.is_finite()) {
+                problems.add(format!("{path}.value"), value, "zero or more", "");
+            }
+            Action::Friction(materials.find(&format!("{path}.material"), material, problems)?, *value)
+        }
+        Change::Gravity(values) => {
+            problems.vector::<D, _>(path, values)?;
+            Action::Gravity(values.iter().map(|value: &Acceleration| value.value()).collect())
+        }
+        Change::StopMotion => Action::StopMotion,
+        Change::Open(name) => Action::Wall(name.clone(), true),
+        Change::Close(name) => Action::Wall(name.clone(), false),
+    })
+}
+
+/// Makes a change, if the solver is of this method.
+pub(super) fn apply(action: &Action, solver: &mut dyn Any) {
+    if let Some(dem) = solver.downcast_mut::<Dem<D2>>() {
+        apply_to(action, dem);
+    } else if let Some(dem) = solver.downcast_mut::<Dem<D3>>() {
+        apply_to(action, dem);
+    }
+}
+
+fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
+    match action {
+        Action::Friction(material, value) => dem.set_friction(*material, *value),
+        Action::Gravity(values) => {
+            dem.set_gravity(D::Vec::from_slice(values).expect("the number of axes was checked at build"));
+        }
+        Action::StopMotion => dem.stop_motion(),
+        Action::Wall(name, open) => _ = dem.set_open(name, *open),
+    }
+}

@@ -1,0 +1,199 @@
+//! What a run writes and draws.
+
+use super::fluid::ReferenceSpec;
+use granular_core::units::{Length, Time};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Something to write on a schedule.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// How often.
+    pub every: EverySpec,
+    /// What to write, and where.
+    pub write: Writer,
+}
+
+/// How often something is written: at the start and then in equal intervals.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+pub enum EverySpec {
+    /// Every so much simulated time, at the first step at or after it.
+    Time(Time),
+    /// Every so many steps, 1 or more.
+    Steps(u64),
+}
+
+/// What is written.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Writer {
+    /// One row of numbers per look, in a CSV file with units in its head; the first column is `time`.
+    Table {
+        /// File in the run folder, such as `series.csv`.
+        path: String,
+        /// Numbers to write; `granular info <scene>` lists all there are.
+        probes: Vec<String>,
+    },
+    /// Fields of all grains or cells, for ParaView: one `.vtp` or `.vti` per frame and one `.pvd` that lists them.
+    Fields {
+        /// Name of the files in the run folder, without ending.
+        path: String,
+        /// Fields to write; `granular info <scene>` lists all there are.
+        fields: Vec<String>,
+    },
+    /// Contacts as lines between grains, for ParaView.
+    Contacts {
+        /// Name of the files in the run folder, without ending.
+        path: String,
+        /// Fields of contacts (`Link`) to write; `granular info <scene>` lists all there are.
+        fields: Vec<String>,
+    },
+    /// Fields along a line through a fluid, as rows of a CSV file: time, distance, place, then the fields.
+    Profile {
+        /// File in the run folder, such as `profile.csv`.
+        path: String,
+        /// One end of the line, one length per axis.
+        from: Vec<Length>,
+        /// The other end.
+        to: Vec<Length>,
+        /// Points on the line with its ends, 2 or more.
+        points: usize,
+        /// Fields to write; `granular info <scene>` lists all there are.
+        fields: Vec<String>,
+    },
+    /// Fields of all grains or cells in one temporal `.vtkhdf` file (cargo feature `hdf5`).
+    Hdf5 {
+        /// Name of the file in the run folder, without ending.
+        path: String,
+        /// Fields to write; `granular info <scene>` lists all there are.
+        fields: Vec<String>,
+    },
+}
+
+/// A figure, as `<path>.svg` and `<path>.png` in the run folder.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum FigureSpec {
+    /// Columns of a table over time.
+    Series {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read.
+        table: String,
+        /// Columns to draw, at least one.
+        columns: Vec<String>,
+    },
+    /// Run-out and height of a collapsing column over time: lengths over the width of the column,
+    /// times over sqrt(H/g).
+    Runout {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read; it must hold `front` and `height`.
+        table: String,
+        /// Name of the stage in which the column collapses.
+        stage: String,
+    },
+    /// Where the energy goes after a stage begins, over the energy at its start.
+    Energies {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read; it must hold the energies and losses.
+        table: String,
+        /// Name of the stage at whose start the balance begins.
+        stage: String,
+    },
+    /// Grains, coloured by a field, at several times.
+    Flow {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Fields` output to read; it must hold `radius` and the field of the colour.
+        fields: String,
+        /// Field that gives the colour.
+        color: String,
+        /// Name of the stage from whose start times count.
+        stage: String,
+        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
+        times: Vec<f64>,
+    },
+    /// Force chains: contacts of one frame, their width by the normal force.
+    ForceChains {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Contacts` output to read; it must hold `normal_force`.
+        contacts: String,
+        /// Name of the stage from whose start the time counts.
+        stage: String,
+        /// Time in units of sqrt(H/g) of a column; in seconds for other samples.
+        time: f64,
+    },
+    /// A field of a fluid as a colour map, at several times; in space its middle layer along y.
+    Map {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Fields` output to read; it must hold the field of the colour.
+        fields: String,
+        /// Field that gives the colour: its value, or the length of a vector.
+        color: String,
+        /// Whether the colours are symmetric about zero, as for a vorticity.
+        #[serde(default)]
+        diverging: bool,
+        /// First and last value of the colours, in the unit of the field; from the data by default.
+        #[serde(default)]
+        range: Option<Vec<f64>>,
+        /// Name of the stage from whose start times count.
+        stage: String,
+        /// Times, at least one, in seconds.
+        times: Vec<f64>,
+    },
+    /// A field along a line at several times, with curves to compare.
+    Profile {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Profile` output to read.
+        profile: String,
+        /// Column of it, such as `velocity_x`.
+        column: String,
+        /// Name of the stage from whose start times count.
+        stage: String,
+        /// Times, at least one, in seconds.
+        times: Vec<f64>,
+        /// Lengths are divided by this; 1 m by default.
+        #[serde(default)]
+        length: Option<Length>,
+        /// Values are divided by this, in the unit of the column; 1 by default.
+        #[serde(default)]
+        scale: Option<f64>,
+        /// Curves from elsewhere.
+        #[serde(default)]
+        references: Vec<ReferenceCurve>,
+    },
+    /// The spectrum of a column of a table from a stage on. Its highest peak is a metric of the run: `frequency_of_<column>`,
+    /// and with a reference `strouhal_of_<column>`.
+    Spectrum {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read.
+        table: String,
+        /// Column of it.
+        column: String,
+        /// Name of the stage from whose start the series counts.
+        stage: String,
+        /// Length and speed that make frequencies a Strouhal number, `frequency length / speed`.
+        #[serde(default)]
+        reference: Option<ReferenceSpec>,
+    },
+}
+
+/// A curve from elsewhere, for figures.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceCurve {
+    /// What it is and where it is from.
+    pub label: String,
+    /// Its points: distance and value, each as they are drawn.
+    pub points: Vec<(f64, f64)>,
+    /// Whether to draw a line through the points instead of markers.
+    #[serde(default)]
+    pub line: bool,
+}
