@@ -5,10 +5,12 @@
 
 mod collection;
 mod read;
+mod read_grid;
 mod xml;
 
 pub use collection::Collection;
 pub use read::{Points, read_vtp};
+pub use read_grid::{GridFields, read_vti};
 
 use crate::error::IoError;
 use crate::frame::{Field, Frame, Grid, coordinates};

@@ -1,4 +1,4 @@
-//! Reading back `.vtp` files that this crate wrote, for figures made after a run.
+//! Reading back files that this crate wrote, for figures made after a run.
 
 use super::xml::unescaped;
 use crate::error::IoError;
@@ -21,13 +21,17 @@ pub struct Points {
 impl Points {
     /// One number per point or link: the field itself, or the length of its vectors.
     pub fn magnitude(&self, name: &str) -> Option<Vec<f64>> {
-        let (_, components, values) = self.fields.iter().find(|(field, ..)| field == name)?;
-        if *components == 1 {
-            return Some(values.clone());
-        }
-        let length = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-        Some(values.chunks(*components).map(length).collect())
+        magnitude(&self.fields, name)
     }
+}
+
+pub(super) fn magnitude(fields: &[(String, usize, Vec<f64>)], name: &str) -> Option<Vec<f64>> {
+    let (_, components, values) = fields.iter().find(|(field, ..)| field == name)?;
+    if *components == 1 {
+        return Some(values.clone());
+    }
+    let length = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    Some(values.chunks(*components).map(length).collect())
 }
 
 /// Reads a `.vtp` file that [`write_vtp`](super::write_vtp) or
@@ -36,27 +40,10 @@ impl Points {
 /// # Errors
 /// When the file cannot be read or is of another kind.
 pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
-    let bytes = fs::read(path).map_err(IoError::on("read", path))?;
-    let fail = |reason: &str| IoError::new("read", path, reason.to_owned());
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let at = bytes.windows(mark.len()).position(|window| window == mark);
-    let at = at.ok_or_else(|| fail("it is no file of raw appended data"))?;
-    let head = std::str::from_utf8(&bytes[..at]).map_err(|_| fail("its head is no text"))?;
-    let blocks = &bytes[at + mark.len()..];
-    let mut read = Points::default();
+    let Content { head, time, arrays } = Content::read(path, "PolyData")?;
+    let mut read = Points { time, ..Points::default() };
     let mut connectivity = Vec::new();
-    for line in head.lines().filter(|line| line.starts_with("<DataArray ")) {
-        let name = attribute(line, "Name").ok_or_else(|| fail("an array has no name"))?;
-        if name == "TimeValue" {
-            let value = line.split('>').nth(1).and_then(|rest| rest.split('<').next());
-            read.time = value.and_then(|text| text.trim().parse().ok()).unwrap_or(f64::NAN);
-        }
-        let Some(offset) = attribute(line, "offset").and_then(|text| text.parse::<usize>().ok()) else {
-            continue;
-        };
-        let kind = attribute(line, "type").unwrap_or_default();
-        let values = block(blocks, offset, &kind).ok_or_else(|| fail("it ends within an array"))?;
-        let components = attribute(line, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
+    for (name, components, values) in arrays {
         match name.as_str() {
             "Points" => read.points = values.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
             "connectivity" => connectivity = values,
@@ -70,16 +57,57 @@ pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
     Ok(read)
 }
 
-fn attribute(line: &str, name: &str) -> Option<String> {
+/// The text and the appended arrays of a file.
+pub(super) struct Content {
+    /// All before the appended data.
+    pub(super) head: String,
+    /// Time \[s\]; not a number when the file has none.
+    pub(super) time: f64,
+    /// Name, number of components, and values.
+    pub(super) arrays: Vec<(String, usize, Vec<f64>)>,
+}
+
+impl Content {
+    /// Reads a file whose data set is of `kind`.
+    pub(super) fn read(path: &Path, kind: &str) -> Result<Self, IoError> {
+        let bytes = fs::read(path).map_err(IoError::on("read", path))?;
+        let fail = |reason: &str| IoError::new("read", path, reason.to_owned());
+        let mark = b"<AppendedData encoding=\"raw\">\n_";
+        let at = bytes.windows(mark.len()).position(|window| window == mark);
+        let at = at.ok_or_else(|| fail("it is no file of raw appended data"))?;
+        let head = std::str::from_utf8(&bytes[..at]).map_err(|_| fail("its head is no text"))?;
+        if !head.contains(&format!("<VTKFile type=\"{kind}\"")) {
+            return Err(fail(&format!("it holds no {kind}")));
+        }
+        let blocks = &bytes[at + mark.len()..];
+        let mut content = Self { head: head.to_owned(), time: f64::NAN, arrays: Vec::new() };
+        for line in head.lines().filter(|line| line.starts_with("<DataArray ")) {
+            let name = attribute(line, "Name").ok_or_else(|| fail("an array has no name"))?;
+            if let Some(offset) = attribute(line, "offset").and_then(|text| text.parse::<usize>().ok()) {
+                let kind = attribute(line, "type").unwrap_or_default();
+                let values = block(blocks, offset, &kind).ok_or_else(|| fail("it ends within an array"))?;
+                let components = attribute(line, "NumberOfComponents").and_then(|n| n.parse().ok());
+                content.arrays.push((name, components.unwrap_or(1).max(1), values));
+            } else if name == "TimeValue" {
+                let value = line.split('>').nth(1).and_then(|rest| rest.split('<').next());
+                content.time = value.and_then(|text| text.trim().parse().ok()).unwrap_or(f64::NAN);
+            }
+        }
+        Ok(content)
+    }
+}
+
+pub(super) fn attribute(line: &str, name: &str) -> Option<String> {
     let from = line.find(&format!(" {name}=\""))? + name.len() + 3;
     let to = from + line[from..].find('"')?;
     Some(unescaped(&line[from..to]))
 }
 
 fn block(blocks: &[u8], offset: usize, kind: &str) -> Option<Vec<f64>> {
-    let head = blocks.get(offset..offset.checked_add(8)?)?;
+    let start = offset.checked_add(8)?;
+    let head = blocks.get(offset..start)?;
     let length = usize::try_from(u64::from_le_bytes(head.try_into().ok()?)).ok()?;
-    let data = blocks.get(offset + 8..(offset + 8).checked_add(length)?)?;
+    let data = blocks.get(start..start.checked_add(length)?)?;
     let four = |chunk: &[u8]| <[u8; 4]>::try_from(chunk).expect("chunks of four bytes");
     let eight = |chunk: &[u8]| <[u8; 8]>::try_from(chunk).expect("chunks of eight bytes");
     Some(match kind {
