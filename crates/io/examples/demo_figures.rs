@@ -1,6 +1,8 @@
 //! Draws one figure of each kind into the folder given as argument.
 
-use granular_io::figure::{Axis, Chain, Chart, Grain, GrainFigure, GrainPanel, Panels, Series, Style};
+use granular_io::figure::{
+    Axis, Chain, Chart, Grain, GrainFigure, GrainPanel, MapFigure, MapPanel, Panels, Series, Style,
+};
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -12,6 +14,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Panels::new("Four charts", 2, charts).figure().save(&folder.join("panels"))?;
     collapse().figure().save(&folder.join("collapse"))?;
     chains().figure().save(&folder.join("chains"))?;
+    channel(false).figure().save(&folder.join("speed"))?;
+    channel(true).figure().save(&folder.join("vorticity"))?;
+    vortices().figure().save(&folder.join("vortices"))?;
     Ok(())
 }
 
@@ -113,4 +118,77 @@ fn chains() -> GrainFigure {
     let panels = vec![panel("(a) frictionless"), panel("(b) µ = 0.5")];
     let force = "normal force [N]".to_owned();
     GrainFigure { columns: 2, force, ..GrainFigure::new("Force chains", "", panels) }
+}
+
+/// Velocity [m/s] in a channel of 2.2 m by 0.41 m: around a disk of radius 0.05 m at (0.2, 0.2) m,
+/// with vortices behind it in turn above and below. It only looks like a flow.
+fn velocity([x, y]: [f64; 2]) -> [f64; 2] {
+    let profile = 4.0 * 1.5 * y * (0.41 - y) / (0.41 * 0.41);
+    let (dx, dy) = (x - 0.2, y - 0.2);
+    let distance = dx * dx + dy * dy;
+    let bend = 0.0025 / (distance * distance) * (-distance / 0.01).exp();
+    let begin = 1.0 - (-(dx.max(0.0) / 0.06).powi(2)).exp();
+    let wake = begin * (-(dy / 0.05).powi(2) - dx / 0.5).exp();
+    let mut v = [profile * (1.0 - bend * (dx * dx - dy * dy) - 0.8 * wake), -profile * bend * 2.0 * dx * dy];
+    for i in 0..12 {
+        let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let (dx, dy) = (x - 0.33 - 0.155 * f64::from(i), y - 0.2 - 0.035 * sign);
+        let core = 1.2e-3 * (1.0 + 0.35 * f64::from(i));
+        let turn = -sign * 22.0 * (-(dx * dx + dy * dy) / core).exp() / (1.0 + 0.12 * f64::from(i));
+        v = [v[0] - turn * dy, v[1] + turn * dx];
+    }
+    v
+}
+
+fn channel(rotation: bool) -> MapFigure {
+    let cells = [2200, 410];
+    let d = 0.5e-3;
+    let value = |i: usize| {
+        let [x, y] = [(i % cells[0]) as f64 + 0.5, (i / cells[0]) as f64 + 0.5].map(|n| n * 1e-3);
+        if (x - 0.2).hypot(y - 0.2) < 0.05 {
+            f64::NAN
+        } else if rotation {
+            let across = velocity([x + d, y])[1] - velocity([x - d, y])[1];
+            (across - velocity([x, y + d])[0] + velocity([x, y - d])[0]) / (2.0 * d)
+        } else {
+            velocity([x, y])[0].hypot(velocity([x, y])[1])
+        }
+    };
+    let turn = |i: i32| (std::f64::consts::TAU * f64::from(i) / 90.0).sin_cos();
+    let disk = (0..90).map(|i| [0.2 + 0.05 * turn(i).1, 0.2 + 0.05 * turn(i).0]).collect();
+    let values = (0..cells[0] * cells[1]).map(value).collect();
+    let panel = MapPanel { cells, values, outlines: vec![disk], ..MapPanel::default() };
+    let (title, quantity) = if rotation {
+        ("Vorticity behind a disk", "vorticity [s⁻¹]")
+    } else {
+        ("Flow around a disk in a channel", "speed [m/s]")
+    };
+    MapFigure {
+        diverging: rotation,
+        ..MapFigure::new(title, quantity, [[0.0, 0.0], [2.2, 0.41]], vec![panel])
+    }
+}
+
+fn vortices() -> MapFigure {
+    let panel = |n: usize, strength: f64, label: &str| {
+        let wave = |i: usize| (std::f64::consts::TAU * (i as f64 + 0.5) / n as f64).sin();
+        let value = |i: usize| strength * wave(i % n) * wave(i / n);
+        let values = (0..n * n).map(value).collect();
+        MapPanel { label: label.to_owned(), cells: [n, n], values, ..MapPanel::default() }
+    };
+    let panels = vec![
+        panel(16, 2.0, "16 × 16 cells, t = 0"),
+        panel(256, 2.0, "256 × 256 cells, t = 0"),
+        panel(16, 1.1, "16 × 16 cells, t = 0.6 τ"),
+        panel(256, 1.1, "256 × 256 cells, t = 0.6 τ"),
+    ];
+    let corners = [[0.0, 0.0], [1.0, 1.0]];
+    let figure = MapFigure::new("Decay of Taylor–Green vortices", "vorticity / ω₀ [-]", corners, panels);
+    MapFigure {
+        diverging: true,
+        values: Some([-2.0, 2.0]),
+        columns: 2,
+        axes: ["x / L [-]".to_owned(), "y / L [-]".to_owned()],
+        ..figure
+    }
 }

@@ -1,7 +1,7 @@
 //! Figures as SVG and PNG that need no font, library or program on the machine.
 //!
 //! A [`Chart`] holds series on two axes, [`Panels`] several charts, a [`GrainFigure`] snapshots of
-//! disks with a colour bar. Each becomes a [`Figure`], which is saved as `.svg` (text as
+//! disks with a colour bar, a [`MapFigure`] values in the cells of grids. Each becomes a [`Figure`], which is saved as `.svg` (text as
 //! outlines, so it looks the same everywhere) and `.png` at twice the size in pixels.
 //!
 //! Points that are not finite, or not positive on a logarithmic axis, are left out and break a
@@ -12,11 +12,15 @@
 
 mod chart;
 mod colour;
+mod colour_bar;
 mod drawing;
 mod font;
 mod geometry;
 mod grains;
+mod image;
+mod layout;
 mod legend;
+mod map;
 mod panels;
 mod plot;
 mod raster;
@@ -25,6 +29,7 @@ mod svg;
 
 pub use chart::{Axis, Chart, Scale, Series, Style};
 pub use grains::{Chain, Grain, GrainFigure, GrainPanel};
+pub use map::{MapFigure, MapPanel};
 pub use panels::Panels;
 
 use crate::atomic::write_atomically;

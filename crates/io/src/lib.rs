@@ -8,7 +8,7 @@
 //! | the list of such files, `.pvd` | [`Collection`] | ParaView |
 //! | all times in one file, `.vtkhdf` | `VtkHdfPoints`, `VtkHdfGrid` (cargo feature `hdf5`) | ParaView 5.13 |
 //! | states to go on from, `.bin` | [`SnapshotStore`], [`state_hash`] | this crate |
-//! | figures, `.svg` and `.png` | [`figure::Chart`], [`figure::Panels`], [`figure::GrainFigure`] | everything |
+//! | figures, `.svg` and `.png` | [`figure::Chart`], [`figure::Panels`], [`figure::GrainFigure`], [`figure::MapFigure`] | everything |
 //! | any other file, whole or not at all | [`write_atomically`] | |
 //!
 //! A run that is killed goes on as if nothing had happened: `position`, `len` and `steps` of the

@@ -1,4 +1,4 @@
-//! Colours: a palette that colour-blind readers can tell apart, and a map for scalars.
+//! Colours: a palette that colour-blind readers can tell apart, and maps for scalars.
 
 /// Red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ impl Colour {
     pub(super) const FRAME: Self = Self([70; 3]);
     pub(super) const GRID: Self = Self([226; 3]);
     pub(super) const FINE_GRID: Self = Self([241; 3]);
-    /// Grains without a value.
+    /// Grains and cells without a value.
     pub(super) const NEUTRAL: Self = Self([214; 3]);
 
     /// A colour of the palette of Okabe and Ito without its yellow, which is too pale for lines on
@@ -28,10 +28,24 @@ impl Colour {
             0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b,
             0xfde725,
         ];
-        let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-        let index = (place as usize).min(VIRIDIS.len() - 2);
+        Self::between(&VIRIDIS, share)
+    }
+
+    /// The map RdBu of ColorBrewer from blue at 0 over white at one half to red at 1: it is as
+    /// light at either side of the middle, and colour-blind readers can tell the sides apart.
+    pub(super) fn of_signed_share(share: f64) -> Self {
+        const BLUE_RED: [u32; 11] = [
+            0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xf4a582, 0xd6604d,
+            0xb2182b, 0x67001f,
+        ];
+        Self::between(&BLUE_RED, share)
+    }
+
+    fn between(colours: &[u32], share: f64) -> Self {
+        let place = share.clamp(0.0, 1.0) * (colours.len() - 1) as f64;
+        let index = (place as usize).min(colours.len() - 2);
         let part = place - index as f64;
-        let (low, high) = (Self::from_hex(VIRIDIS[index]).0, Self::from_hex(VIRIDIS[index + 1]).0);
+        let (low, high) = (Self::from_hex(colours[index]).0, Self::from_hex(colours[index + 1]).0);
         Self(std::array::from_fn(|k| {
             (f64::from(low[k]) * (1.0 - part) + f64::from(high[k]) * part).round() as u8
         }))

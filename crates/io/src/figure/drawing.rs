@@ -3,6 +3,7 @@
 
 use super::colour::Colour;
 use super::font::{Font, Weight};
+use super::image::Image;
 
 /// A point in pixels.
 pub(super) type Spot = [f64; 2];
@@ -48,6 +49,7 @@ pub(super) enum Shape {
     Path { outline: Vec<Segment>, fill: Option<Fill>, stroke: Option<Stroke> },
     Circle { center: Spot, radius: f64, fill: Option<Fill>, stroke: Option<Stroke> },
     Text { text: String, outline: Vec<Segment>, colour: Colour },
+    Image { image: Image, area: Area },
 }
 
 /// Where a text lies against its spot.
@@ -148,6 +150,13 @@ impl Drawing {
 
     pub(super) fn circle(&mut self, center: Spot, radius: f64, fill: Fill, stroke: Option<Stroke>) {
         self.shapes.push(Shape::Circle { center, radius, fill: Some(fill), stroke });
+    }
+
+    /// Pixels that fill an area; none when it has no extent.
+    pub(super) fn image(&mut self, image: Image, area: Area) {
+        if area.width() > 0.0 && area.height() > 0.0 {
+            self.shapes.push(Shape::Image { image, area });
+        }
     }
 
     /// Writes a text on the base line through `at`.

@@ -3,11 +3,11 @@
 use super::Figure;
 use super::chart::Scale;
 use super::colour::Colour;
+use super::colour_bar::ColourBar;
 use super::drawing::{Anchor, Area, Drawing, Fill, Lettering, Spot, Stroke};
-use super::font::{Font, Weight};
 use super::geometry::clip_line;
-use super::plot::{TICK, TICK_SIZE};
-use super::scale::{Mapping, Ticks, range_of, three_digits, ticks};
+use super::layout::{Layout, Request, are_usable};
+use super::scale::{range_of, three_digits};
 
 /// A disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,13 +76,6 @@ pub struct GrainFigure {
     pub panels: Vec<GrainPanel>,
 }
 
-/// Height of all snapshots together in pixels at most.
-const TALLEST: f64 = 860.0;
-/// Room between snapshots side by side, so that the numbers below do not meet.
-const GAP: f64 = 30.0;
-/// Room between snapshots above one another.
-const SMALL_GAP: f64 = 14.0;
-
 impl GrainFigure {
     /// Snapshots above one another, 760 pixels wide, with axes in metres.
     pub fn new(title: impl Into<String>, quantity: impl Into<String>, panels: Vec<GrainPanel>) -> Self {
@@ -99,22 +92,29 @@ impl GrainFigure {
 
     /// The figure.
     pub fn figure(&self) -> Figure {
-        let layout = Layout::of(self);
-        let mut drawing = Drawing::new(layout.size, &self.title);
-        if !self.title.is_empty() {
-            let heading = Lettering::heading(15.0, Anchor::Middle);
-            let room = layout.size[0] - 16.0;
-            drawing.text_within(&self.title, [0.5 * layout.size[0], 23.0], room, heading);
-        }
+        let noted = self.strongest() > 0.0 && !self.force.is_empty();
+        let barred = !self.quantity.is_empty() && self.values().any(f64::is_finite);
+        let layout = Layout::of(&Request {
+            title: &self.title,
+            labels: self.panels.iter().any(|panel| !panel.label.is_empty()),
+            bar: barred,
+            note: noted,
+            count: self.panels.len(),
+            columns: self.columns,
+            width: self.width,
+            corners: corners_of(self),
+        });
+        let mut drawing = layout.drawing(&self.title);
         for (index, panel) in self.panels.iter().enumerate() {
             self.draw_panel(&mut drawing, &layout, index, panel);
         }
-        if layout.bar {
-            self.draw_bar(&mut drawing, &layout);
+        if barred {
+            let (quantity, range) = (self.quantity.as_str(), self.colours());
+            let bar = ColourBar { quantity, range, colour: Colour::of_share, strips: 64, beyond: [false; 2] };
+            bar.draw(&mut drawing, &layout);
         }
-        let strongest = self.strongest();
-        if strongest > 0.0 && !self.force.is_empty() {
-            let text = format!("Line width: {}, widest {}", self.force, three_digits(strongest));
+        if noted {
+            let text = format!("Line width: {}, widest {}", self.force, three_digits(self.strongest()));
             let note = Lettering { colour: Colour::FAINT_TEXT, ..Lettering::plain(10.5, Anchor::Start) };
             drawing.text(&text, [layout.left, layout.size[1] - 7.0], note);
         }
@@ -138,8 +138,7 @@ impl GrainFigure {
         let area = layout.panel(index);
         let place = |[x, y]: [f64; 2]| [layout.x(area).place(x), layout.y(area).place(y)];
         drawing.rectangle(area, None, Some(Stroke::plain(Colour::GRID, 0.8)));
-        let at = [area.left, area.top - 5.0];
-        drawing.text_within(&panel.label, at, area.width(), Lettering::heading(12.5, Anchor::Start));
+        layout.draw_label(drawing, index, &panel.label);
         let [low, high] = self.colours();
         for grain in &panel.grains {
             let radius = grain.radius * layout.scale;
@@ -181,150 +180,6 @@ impl GrainFigure {
             }
         }
     }
-
-    fn draw_bar(&self, drawing: &mut Drawing, layout: &Layout) {
-        let range = self.colours();
-        let middle = 0.5 * (layout.top + layout.bottom);
-        let half = (0.5 * (layout.bottom - layout.top)).clamp(40.0, 150.0);
-        let left = layout.right + 18.0;
-        let area = Area { left, top: middle - half, right: left + 13.0, bottom: middle + half };
-        let strips = 64;
-        let height = area.height() / f64::from(strips);
-        for i in 0..strips {
-            let top = area.top + height * f64::from(i);
-            // Each strip reaches below the next: no white seams.
-            let strip = Area { top, bottom: (top + 1.5 * height).min(area.bottom), ..area };
-            let colour = Colour::of_share(1.0 - (f64::from(i) + 0.5) / f64::from(strips));
-            drawing.rectangle(strip, Some(Fill::solid(colour)), None);
-        }
-        let stroke = Stroke::plain(Colour::FRAME, 0.8);
-        drawing.rectangle(area, None, Some(stroke));
-        let mapping = Mapping::new(Scale::Linear, range, area.bottom, area.top);
-        let Ticks { ticks, factor, .. } = ticks(Scale::Linear, range, 5);
-        let mut widest = 10.0_f64;
-        for tick in &ticks {
-            let y = mapping.place(tick.value);
-            drawing.line([area.right, y], [area.right + TICK, y], stroke);
-            let at = [area.right + TICK + 4.0, y + 0.36 * TICK_SIZE];
-            drawing.text(&tick.label, at, Lettering::plain(TICK_SIZE, Anchor::Start));
-            widest = widest.max(Font::new(Weight::Regular).width(&tick.label, TICK_SIZE));
-        }
-        drawing.text(&factor, [area.left, area.top - 6.0], Lettering::plain(TICK_SIZE, Anchor::Start));
-        let label = Lettering { upward: true, ..Lettering::plain(13.0, Anchor::Middle) };
-        let at = [area.right + TICK + widest + 21.0, middle];
-        drawing.text_within(&self.quantity, at, layout.bottom - layout.top + 40.0, label);
-    }
-}
-
-/// Where the snapshots lie.
-struct Layout {
-    size: [f64; 2],
-    left: f64,
-    top: f64,
-    right: f64,
-    bottom: f64,
-    columns: usize,
-    count: usize,
-    panel: [f64; 2],
-    head: f64,
-    /// Pixels per unit of the axes.
-    scale: f64,
-    corners: [[f64; 2]; 2],
-    ticks: [Ticks; 2],
-    bar: bool,
-}
-
-impl Layout {
-    fn of(figure: &GrainFigure) -> Self {
-        let count = figure.panels.len().max(1);
-        let columns = figure.columns.clamp(1, count);
-        let rows = count.div_ceil(columns);
-        let corners = corners_of(figure);
-        let world = [corners[1][0] - corners[0][0], corners[1][1] - corners[0][1]];
-        let bar = !figure.quantity.is_empty() && figure.values().any(f64::is_finite);
-        let head = if figure.panels.iter().any(|panel| !panel.label.is_empty()) { 20.0 } else { 4.0 };
-        let (left, right) = (66.0, if bar { 104.0 } else { 16.0 });
-        let top = if figure.title.is_empty() { 6.0 } else { 34.0 };
-        let below = if figure.force.is_empty() || figure.strongest() <= 0.0 { 50.0 } else { 66.0 };
-        let room = figure.width.clamp(240.0, 6000.0) - left - right - GAP * (columns - 1) as f64;
-        let tallest = (TALLEST / rows as f64 - head).max(60.0);
-        let scale = (room / columns as f64 / world[0]).min(tallest / world[1]);
-        let panel = world.map(|length| (length * scale).max(12.0));
-        let width = panel[0] * columns as f64 + GAP * (columns - 1) as f64;
-        let height = (panel[1] + head) * rows as f64 + SMALL_GAP * (rows - 1) as f64;
-        let each = |k: usize, pixels: f64| {
-            let wanted = (panel[k] / pixels).clamp(2.0, 8.0) as usize;
-            ticks(Scale::Linear, [corners[0][k], corners[1][k]], wanted)
-        };
-        Self {
-            size: [left + width + right, top + height + below],
-            left,
-            top: top + head,
-            right: left + width,
-            bottom: top + height,
-            columns,
-            count,
-            panel,
-            head,
-            scale,
-            corners,
-            ticks: [each(0, 78.0), each(1, 42.0)],
-            bar,
-        }
-    }
-
-    fn panel(&self, index: usize) -> Area {
-        let (column, row) = ((index % self.columns) as f64, (index / self.columns) as f64);
-        let [width, height] = self.panel;
-        let left = self.left + column * (width + GAP);
-        let top = self.top + row * (height + self.head + SMALL_GAP);
-        Area { left, top, right: left + width, bottom: top + height }
-    }
-
-    fn x(&self, area: Area) -> Mapping {
-        Mapping::new(Scale::Linear, [self.corners[0][0], self.corners[1][0]], area.left, area.right)
-    }
-
-    fn y(&self, area: Area) -> Mapping {
-        Mapping::new(Scale::Linear, [self.corners[0][1], self.corners[1][1]], area.bottom, area.top)
-    }
-
-    /// Numbers stand at the left and below the last snapshot of each column.
-    fn draw_axes(&self, drawing: &mut Drawing, index: usize, labels: &[String; 2]) {
-        let area = self.panel(index);
-        let stroke = Stroke::plain(Colour::FRAME, 0.8);
-        let small = |anchor| Lettering::plain(TICK_SIZE, anchor);
-        let [x_ticks, y_ticks] = &self.ticks;
-        let with_factor = |label: &str, ticks: &Ticks| {
-            if ticks.factor.is_empty() { label.to_owned() } else { format!("{label}  {}", ticks.factor) }
-        };
-        if index.is_multiple_of(self.columns) {
-            let mut widest = 10.0_f64;
-            for tick in &y_ticks.ticks {
-                let y = self.y(area).place(tick.value);
-                drawing.line([area.left - TICK, y], [area.left, y], stroke);
-                let at = [area.left - TICK - 4.0, y + 0.36 * TICK_SIZE];
-                drawing.text(&tick.label, at, small(Anchor::End));
-                widest = widest.max(Font::new(Weight::Regular).width(&tick.label, TICK_SIZE));
-            }
-            let label = Lettering { upward: true, ..Lettering::plain(13.0, Anchor::Middle) };
-            let at = [area.left - TICK - widest - 13.0, area.center()[1]];
-            drawing.text_within(&with_factor(&labels[1], y_ticks), at, area.height() + 20.0, label);
-        }
-        if index + self.columns >= self.count {
-            for tick in &x_ticks.ticks {
-                let x = self.x(area).place(tick.value);
-                drawing.line([x, area.bottom], [x, area.bottom + TICK], stroke);
-                let half = 0.5 * Font::new(Weight::Regular).width(&tick.label, TICK_SIZE);
-                if x - half > area.left - 0.5 * GAP && x + half < area.right + 0.5 * GAP {
-                    drawing.text(&tick.label, [x, area.bottom + TICK + 13.0], small(Anchor::Middle));
-                }
-            }
-            let at = [area.center()[0], area.bottom + 38.0];
-            let label = Lettering::plain(13.0, Anchor::Middle);
-            drawing.text_within(&with_factor(&labels[0], x_ticks), at, area.width(), label);
-        }
-    }
 }
 
 /// Lower left and upper right corner of all that is drawn.
@@ -343,9 +198,5 @@ fn corners_of(figure: &GrainFigure) -> [[f64; 2]; 2] {
     let ([left, right], [bottom, top]) = (ends(0), ends(1));
     let all = [[left, bottom], [right, top]];
     let asked = figure.corners.unwrap_or(all);
-    let usable = (0..2).all(|k| {
-        let length = asked[1][k] - asked[0][k];
-        length.is_finite() && length > 1e-9 * asked[0][k].abs().max(asked[1][k].abs())
-    });
-    if usable { asked } else { all }
+    if are_usable(asked) { asked } else { all }
 }

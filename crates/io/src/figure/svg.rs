@@ -3,6 +3,9 @@
 use super::drawing::{Drawing, Fill, Segment, Shape, Spot, Stroke};
 use std::fmt::Write;
 
+/// Pixels of the drawing per pixel of an image from which on it is shown as squares.
+const LARGE: f64 = 2.0;
+
 pub(super) fn document(drawing: &Drawing) -> String {
     let [width, height] = drawing.size;
     let mut text = format!(
@@ -20,6 +23,19 @@ pub(super) fn document(drawing: &Drawing) -> String {
 
 fn put(text: &mut String, shape: &Shape) {
     let written = match shape {
+        Shape::Image { image, area } => {
+            let [x, y] = [area.left, area.top].map(number);
+            let [width, height] = [area.width(), area.height()].map(number);
+            // Viewers would blur the edges of cells that are large enough to be seen.
+            let large = area.width() >= LARGE * image.width() as f64;
+            let rendering = if large { " image-rendering=\"pixelated\"" } else { "" };
+            let data = base64(&image.png());
+            writeln!(
+                text,
+                "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+                 preserveAspectRatio=\"none\"{rendering} href=\"data:image/png;base64,{data}\"/>"
+            )
+        }
         Shape::Path { outline, fill, stroke } => {
             let style = style(fill.as_ref(), stroke.as_ref());
             writeln!(text, "<path d=\"{}\"{style}/>", path(outline))
@@ -88,4 +104,33 @@ fn number(value: f64) -> String {
 fn escaped(text: &str) -> String {
     let kept = text.chars().filter(|sign| !sign.is_control());
     kept.collect::<String>().replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+/// Bytes as text in the standard alphabet with padding (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(three.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            let letter = char::from(LETTERS[(bits >> (18 - 6 * i)) as usize & 63]);
+            text.push(if i <= three.len() { letter } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    #[test]
+    fn base64_gives_the_examples_of_its_standard() {
+        let cases = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg==")];
+        for (plain, coded) in cases {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+        assert_eq!(base64(&[0xfb, 0xff, 0xfe]), "+//+");
+    }
 }
