@@ -4,7 +4,7 @@ use super::chart::Scale;
 use super::colour::Colour;
 use super::drawing::{Anchor, Area, Drawing, Fill, Lettering, Stroke};
 use super::font::{Font, Weight};
-use super::layout::Layout;
+use super::layout::{Layout, SHORTEST_BAR};
 use super::plot::{TICK, TICK_SIZE};
 use super::scale::{Mapping, Ticks, ticks};
 
@@ -27,8 +27,9 @@ const ARROW: f64 = 10.0;
 
 impl ColourBar<'_> {
     pub(super) fn draw(&self, drawing: &mut Drawing, layout: &Layout) {
-        let middle = 0.5 * (layout.top + layout.bottom);
-        let half = (0.5 * (layout.bottom - layout.top)).clamp(40.0, 150.0);
+        let half = (0.5 * (layout.bottom - layout.top)).clamp(0.5 * SHORTEST_BAR, 150.0);
+        // Beside a flat panel it reaches down, not up into the title.
+        let middle = (0.5 * (layout.top + layout.bottom)).max(layout.top + half);
         let left = layout.right + 18.0;
         let [below, above] = self.beyond.map(|beyond| if beyond { ARROW } else { 0.0 });
         let (top, bottom) = (middle - half + above, middle + half - below);
@@ -48,7 +49,8 @@ impl ColourBar<'_> {
         drawing.text(&factor, at, Lettering::plain(TICK_SIZE, Anchor::Start));
         let label = Lettering { upward: true, ..Lettering::plain(13.0, Anchor::Middle) };
         let at = [area.right + TICK + widest + 21.0, middle];
-        drawing.text_within(self.quantity, at, layout.bottom - layout.top + 40.0, label);
+        let room = (layout.bottom - layout.top + 40.0).max(2.0 * half + 10.0);
+        drawing.text_within(self.quantity, at, room, label);
     }
 
     fn draw_colours(&self, drawing: &mut Drawing, area: Area) {

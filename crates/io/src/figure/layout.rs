@@ -14,6 +14,9 @@ const GAP: f64 = 30.0;
 /// Room between panels above one another.
 const SMALL_GAP: f64 = 14.0;
 
+/// Height of a colour bar in pixels at least.
+pub(super) const SHORTEST_BAR: f64 = 80.0;
+
 /// What a layout is for.
 pub(super) struct Request<'a> {
     pub(super) title: &'a str,
@@ -68,8 +71,10 @@ impl Layout {
             let wanted = (panel[k] / pixels).clamp(2.0, 8.0) as usize;
             ticks(Scale::Linear, [corners[0][k], corners[1][k]], wanted)
         };
+        // A colour bar does not become as flat as the panels.
+        let least = if request.bar { top + head + SHORTEST_BAR + 12.0 } else { 0.0 };
         Self {
-            size: [left + width + right, top + height + below],
+            size: [left + width + right, (top + height + below).max(least)],
             left,
             top: top + head,
             right: left + width,

@@ -144,31 +144,35 @@ impl MapFigure {
         if !self.diverging {
             return range_of(Scale::Linear, self.values, self.shown(), 0.0);
         }
-        // Below, numbers lose their digits.
-        let has_size = |size: &f64| can_show(Scale::Linear, *size) && *size > 1e-280;
-        let asked = self.values.map(|[low, high]| low.abs().max(high.abs())).filter(has_size);
-        let size = asked.unwrap_or_else(|| {
-            let mut sizes: Vec<f64> = self.shown().map(f64::abs).collect();
-            sizes.sort_unstable_by(f64::total_cmp);
-            let place = ((TOLD_APART * sizes.len() as f64).ceil() as usize).saturating_sub(1);
-            let largest = sizes.iter().rev().find(|size| can_show(Scale::Linear, **size));
-            let (usual, largest) =
-                (sizes.get(place).filter(|size| has_size(size)), largest.filter(|size| has_size(size)));
-            match (usual, largest) {
-                (Some(usual), Some(largest)) if *largest > EXTREME * usual => *usual,
-                // Nearly all may be zero.
-                (_, Some(largest)) => *largest,
-                _ => 1.0,
-            }
-        });
+        let size = self.values.map(|[low, high]| low.abs().max(high.abs())).filter(has_size);
+        let size = size.or_else(|| self.usual_size()).unwrap_or(1.0);
         [-size, size]
     }
 
-    fn usable_corners(&self) -> [[f64; 2]; 2] {
-        let cells = self.panels.iter().map(|panel| panel.cells).find(|cells| !cells.contains(&0));
-        let counted = [[0.0; 2], cells.unwrap_or([1, 1]).map(|n| n as f64)];
-        [self.corners, counted].into_iter().find(|corners| are_usable(*corners)).unwrap_or(counted)
+    /// The largest absolute value, or what all but a few extreme cells are below.
+    fn usual_size(&self) -> Option<f64> {
+        let shown = self.shown().map(f64::abs);
+        let mut sizes: Vec<f64> = shown.filter(|&size| can_show(Scale::Linear, size)).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        let largest = sizes.last().copied().filter(has_size)?;
+        let place = (TOLD_APART * sizes.len() as f64).ceil() as usize;
+        // Nearly all may be zero; then the others are what is to be seen.
+        let usual = sizes.get(place.saturating_sub(1)).copied().filter(has_size).unwrap_or(largest);
+        Some(if largest > EXTREME * usual { usual } else { largest })
     }
+
+    fn usable_corners(&self) -> [[f64; 2]; 2] {
+        if are_usable(self.corners) {
+            return self.corners;
+        }
+        let cells = self.panels.iter().map(|panel| panel.cells).find(|cells| !cells.contains(&0));
+        [[0.0; 2], cells.unwrap_or([1, 1]).map(|n| n as f64)]
+    }
+}
+
+/// Whether colours up to this absolute value can be told apart: numbers below lose their digits.
+fn has_size(size: &f64) -> bool {
+    can_show(Scale::Linear, *size) && *size > 1e-280
 }
 
 impl MapPanel {
