@@ -170,6 +170,16 @@ fn table_of(folder: &RunFolder, name: &str) -> Result<Table, Failure> {
     Ok(read_table(&folder.path().join(name))?)
 }
 
+/// A time rounded to four digits: output times are those of the first step at or after the one asked for.
+fn four_digits(time: f64) -> f64 {
+    if time == 0.0 {
+        return 0.0;
+    }
+    let unit = 10.0_f64.powi(time.abs().log10().floor() as i32 - 3);
+    // Divided by a whole number where there is one, so that the result prints short.
+    if unit < 1.0 { (time / unit).round() / (1.0 / unit).round() } else { (time / unit).round() * unit }
+}
+
 fn title(scene: &Scene, what: &str) -> String {
     if scene.title.is_empty() { what.to_owned() } else { format!("{}: {what}", scene.title) }
 }

@@ -1,7 +1,7 @@
 //! Profiles and spectra of a fluid, from the files of a run.
 
 use super::spectrum::{Spectrum, spectrum};
-use super::{table_of, title};
+use super::{four_digits, table_of, title};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::run::StageRecord;
@@ -48,7 +48,7 @@ pub(super) fn profile(scene: &Scene, table: &Table, record: &StageRecord, spec: 
         let at_time = (0..time.len()).filter(|row| time[*row] == nearest);
         let points: Vec<[f64; 2]> =
             at_time.map(|row| [distance[row] / length, values[row] / scale]).collect();
-        let label = format!("t = {:.3} s", nearest - record.start);
+        let label = format!("t = {} s", four_digits(nearest - record.start));
         chart = chart.with(Series::new(label, points, Style::Line));
     }
     for reference in spec.references {

@@ -1,7 +1,7 @@
 //! Colour maps of a fluid, from the files of a run.
 
 use super::flow::nearest_file;
-use super::title;
+use super::{four_digits, title};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::run::StageRecord;
@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 
 /// Corners of the outline of a disk.
 const ROUND: usize = 72;
+
+/// Width over height from which maps stand above one another only.
+const FLAT: f64 = 3.0;
 
 /// What a map shows.
 pub(super) struct MapSpec<'a> {
@@ -42,7 +45,8 @@ pub(super) fn map(
     let unit = if scale > 1.0 { "mm" } else { "m" };
     let upward = upward(scene);
     let corner = |axis: usize, end: usize| {
-        scale * (grid.origin[axis] + if end == 1 { grid.spacing[axis] * grid.cells[axis] as f64 } else { 0.0 })
+        scale
+            * (grid.origin[axis] + if end == 1 { grid.spacing[axis] * grid.cells[axis] as f64 } else { 0.0 })
     };
     let corners = [0, 1].map(|end| [corner(0, end), corner(upward, end)]);
     for panel in &mut panels {
@@ -52,8 +56,17 @@ pub(super) fn map(
     let mut figure = MapFigure::new(title(scene, &spec.color.replace('_', " ")), quantity, corners, panels);
     figure.axes = [format!("x [{unit}]"), format!("{} [{unit}]", ["x", "y", "z"][upward])];
     figure.diverging = spec.diverging;
-    figure.values = spec.range;
+    let [[left, below], [right, above]] = corners;
+    figure.columns = if spec.times.len() > 1 && right - left < FLAT * (above - below) { 2 } else { 1 };
+    figure.values = spec.range.or_else(|| from_zero(&figure));
     Ok(figure)
+}
+
+/// The colours of a speed begin at rest.
+fn from_zero(figure: &MapFigure) -> Option<[f64; 2]> {
+    let values = figure.panels.iter().flat_map(|panel| &panel.values);
+    let largest = values.filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(*b));
+    (figure.quantity.starts_with("speed") && largest > 0.0).then_some([0.0, largest])
 }
 
 /// The axis drawn upwards.
@@ -88,8 +101,8 @@ fn panel(scene: &Scene, grid: &GridFields, record: &StageRecord, spec: &MapSpec<
         Dimension::Plane => (2, 0),
         Dimension::Space => (1, grid.cells[1] / 2),
     };
-    let (values, cells) = grid.layer(&values, normal, index);
-    let label = format!("t = {:.4} s", grid.time - record.start);
+    let (values, cells) = grid.plane(&values, normal, index).unwrap_or_default();
+    let label = format!("t = {} s", four_digits(grid.time - record.start));
     let obstacles = scene.fluid.iter().flat_map(|fluid| &fluid.obstacles);
     // Those that move show by their cells.
     let outlines = obstacles.filter(|obstacle| obstacle.path.is_none()).map(|body| outline(scene, body));

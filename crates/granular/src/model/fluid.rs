@@ -8,7 +8,7 @@ use crate::scene_file::SceneProblem;
 use granular_core::{Dim, Simulation, Vector};
 use granular_coupling::{CarriedObstacles, PrescribedMotion};
 use granular_lbm::spec::{LbmSpec, PrecisionSpec};
-use granular_lbm::{D2Q9, D3Q19, Lattice, Lbm, Real};
+use granular_lbm::{D2Q9, D3Q19, Lattice, Lbm, Real, SetupError};
 use read::{Fluid, Reader};
 use std::any::Any;
 
@@ -93,7 +93,8 @@ fn simulation<L: Lattice<Q>, T: Real, const Q: usize>(
         Box::new(SceneProblem::at_path(path.to_owned(), value, allowed, ""))
     };
     let mut lbm = Lbm::<L, Q, T>::new(fluid.setup).map_err(|error| {
-        refuse("fluid", format!("{} is {}", error.what, error.value), error.allowed.clone())
+        let (path, value) = place_of(name, &error);
+        refuse(&path, value, error.allowed)
     })?;
     for (k, obstacle) in lbm.setup().obstacles.iter().enumerate() {
         if lbm.cells_in(k) == 0 {
@@ -120,6 +121,18 @@ fn simulation<L: Lattice<Q>, T: Real, const Q: usize>(
         refuse("fluid.obstacles", error.to_string(), "paths that fit the fluid".to_owned())
     })?;
     Ok(simulation)
+}
+
+/// Where in the scene a refusal of the lattice belongs, and what is there.
+fn place_of(name: &str, error: &SetupError) -> (String, String) {
+    let SetupError { what, value, .. } = error;
+    match what.as_str() {
+        "Lambda" | "relaxation rate" => (format!("solvers.{name}.operator"), format!("of {what} {value}")),
+        "cells" => (format!("solvers.{name}.spacing"), format!("such that cells are {value}")),
+        "faces" => ("fluid.faces".to_owned(), value.clone()),
+        "velocity of a wall" => ("fluid.faces".to_owned(), format!("with a {what} {value}")),
+        _ => ("fluid".to_owned(), format!("with {what} {value}")),
+    }
 }
 
 /// Makes a change, if the solver is of this method.

@@ -36,7 +36,8 @@ impl Line {
     }
 }
 
-/// Cells around a point with their weights: linear between cell centres, and on from them to the ends of the grid.
+/// Cells around a point with their weights: linear between cell centres, and the parabola through the last three from
+/// there to the ends of the grid.
 #[derive(Clone, Debug)]
 struct Stencil(Vec<(usize, f64)>);
 
@@ -48,13 +49,11 @@ impl Stencil {
             let count = cells[axis];
             if count > 1 {
                 let place = (point[axis] - origin[axis]) / spacing[axis] - 0.5;
-                let low = place.floor().clamp(0.0, (count - 2) as f64);
-                let share = place - low;
+                let along = weights(place, count);
                 let step = |(index, weight): (usize, f64)| {
-                    let first = index + low as usize * stride;
-                    [(first, weight * (1.0 - share)), (first + stride, weight * share)]
+                    along.iter().map(move |(cell, share)| (index + cell * stride, weight * share))
                 };
-                corners = corners.into_iter().flat_map(step).collect();
+                corners = corners.iter().flat_map(|corner| step(*corner).collect::<Vec<_>>()).collect();
             }
             stride *= count;
         }
@@ -64,6 +63,20 @@ impl Stencil {
     fn of(&self, value: impl Fn(usize) -> f64) -> f64 {
         self.0.iter().map(|&(index, weight)| weight * value(index)).sum()
     }
+}
+
+/// Cells along an axis with their weights, for a place counted in cells from the centre of the first.
+fn weights(place: f64, count: usize) -> Vec<(usize, f64)> {
+    let last = (count - 1) as f64;
+    if count > 2 && !(0.0..=last).contains(&place) {
+        let low = if place < 0.0 { 0 } else { count - 3 };
+        let s = place - low as f64;
+        let shares = [0.5 * (s - 1.0) * (s - 2.0), -s * (s - 2.0), 0.5 * s * (s - 1.0)];
+        return shares.into_iter().enumerate().map(|(k, share)| (low + k, share)).collect();
+    }
+    let low = place.floor().clamp(0.0, last - 1.0);
+    let share = place - low;
+    vec![(low as usize, 1.0 - share), (low as usize + 1, share)]
 }
 
 /// Appends the fields along a line at each look.

@@ -6,6 +6,7 @@
 mod command;
 mod command_bad_input;
 mod command_disk;
+mod command_flow;
 mod command_interrupt;
 mod command_snapshots;
 mod scenes;
