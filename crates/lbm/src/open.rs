@@ -3,8 +3,10 @@
 //!
 //! What enters from outside follows by bouncing the departure from equilibrium back, with the
 //! transverse momentum put right \[ZouHe1997; HechtHarting2010\]. The regularised form then rebuilds all populations of the cell
-//! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers.
+//! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers. Where open faces
+//! meet, see [`crate::edges`].
 
+use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
 use crate::real::Real;
@@ -27,7 +29,25 @@ pub(crate) enum Known {
     Density,
 }
 
-/// Cells of one open face.
+/// All open faces, and the edges and corners in which they meet.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Open {
+    pub(crate) faces: Vec<OpenFace>,
+    /// Edges before corners: those read cells beside them.
+    pub(crate) edges: Vec<OpenEdge>,
+}
+
+/// A cell of an open face.
+#[derive(Clone, Debug)]
+pub(crate) struct OpenCell {
+    pub(crate) place: usize,
+    /// Lattice units.
+    pub(crate) velocity: [f64; 3],
+    /// Density over that at rest, minus one.
+    pub(crate) excess: f64,
+}
+
+/// Cells of one open face that lie on no other.
 #[derive(Clone, Debug)]
 pub(crate) struct OpenFace {
     pub(crate) axis: usize,
@@ -35,8 +55,7 @@ pub(crate) struct OpenFace {
     pub(crate) inward: i32,
     pub(crate) known: Known,
     pub(crate) scheme: OpenScheme,
-    /// Place, velocity and density excess, in lattice units.
-    pub(crate) cells: Vec<(usize, [f64; 3], f64)>,
+    pub(crate) cells: Vec<OpenCell>,
 }
 
 /// Populations in equilibrium, without their weights.
@@ -64,13 +83,43 @@ pub(crate) fn moments<L: Lattice<Q>, const Q: usize>(f: &[f64; Q], force: [f64; 
     (f.iter().sum(), momentum)
 }
 
-impl OpenFace {
+impl Open {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        let faces = self.faces.iter().map(|face| face.cells.capacity() * size_of::<OpenCell>());
+        faces.sum::<usize>() + self.edges.iter().map(OpenEdge::bytes).sum::<usize>()
+    }
+
+    /// Velocities that are given, in lattice units.
+    pub(crate) fn given_velocities(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let faces = self.faces.iter().flat_map(|face| &face.cells).map(|cell| cell.velocity);
+        faces.chain(self.edges.iter().flat_map(OpenEdge::given_velocities))
+    }
+
     pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
         force: [f64; 3],
     ) {
-        for &(place, velocity, excess) in &self.cells {
+        for face in &self.faces {
+            face.apply::<L, T, Q>(populations, force);
+        }
+        for edge in &self.edges {
+            edge.apply::<L, T, Q>(populations, force);
+        }
+    }
+}
+
+impl OpenFace {
+    fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        populations: &mut Populations<T>,
+        force: [f64; 3],
+    ) {
+        for &OpenCell { place, velocity, excess } in &self.cells {
             let mut f = populations.entering::<L, Q>(place).map(T::double);
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
@@ -128,7 +177,12 @@ impl OpenFace {
 }
 
 /// Keeps density, velocity and stress, and nothing else.
-fn regularise<L: Lattice<Q>, const Q: usize>(f: &mut [f64; Q], excess: f64, u: [f64; 3], force: [f64; 3]) {
+pub(crate) fn regularise<L: Lattice<Q>, const Q: usize>(
+    f: &mut [f64; Q],
+    excess: f64,
+    u: [f64; 3],
+    force: [f64; 3],
+) {
     let at_rest = equilibrium::<L, Q>(excess, u);
     let mut stress = [[0.0; 3]; 3];
     for i in 0..Q {

@@ -34,6 +34,19 @@ fn disk_in_stream() -> Lbm<D2Q9, 9, f32> {
     Lbm::new(setup).unwrap()
 }
 
+fn open_on_all_sides() -> Lbm3 {
+    let mut setup = Setup::new([12, 11, 9], 1e-3, 1e-6, 0.6);
+    let stream = Profile::new(|p: DVec3| DVec3::new(1e-3, 2e-3 * (300.0 * p.x).sin(), -1e-3));
+    let scheme = [OpenScheme::ZouHe, OpenScheme::Regularised];
+    for axis in 0..3 {
+        setup.faces[axis] =
+            [Face::Velocity(stream.clone(), scheme[axis % 2]), Face::Velocity(stream.clone(), scheme[1])];
+    }
+    setup.faces[0][1] = Face::PressureAlong(0.01, stream, OpenScheme::ZouHe);
+    setup.acceleration = DVec3::new(0.0, -1e-5, 0.0);
+    Lbm3::new(setup).unwrap()
+}
+
 fn step(tau: f64) -> f64 {
     Setup::<granular_core::D2>::new([2, 2, 1], 1e-3, 1e-6, tau).time_step
 }
@@ -41,3 +54,4 @@ fn step(tau: f64) -> f64 {
 contract_tests!(cavity_with_closure, cavity, step(0.56));
 contract_tests!(sphere_between_open_faces, spheres, step(0.7));
 contract_tests!(disk_through_a_periodic_face_in_single_precision, disk_in_stream, step(0.6));
+contract_tests!(open_on_all_sides_in_space, open_on_all_sides, step(0.6));

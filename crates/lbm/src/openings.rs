@@ -1,0 +1,155 @@
+//! From open faces of a setup to lists of cells.
+
+use crate::boundary::{Cover, cell_index, cells_of, centre_of};
+use crate::edges::{EdgeCell, OpenEdge};
+use crate::lattice::Lattice;
+use crate::open::{Known, Open, OpenCell, OpenFace, OpenScheme};
+use crate::populations::Grid;
+use crate::setup::{Face, Setup};
+use granular_core::{Dim, Vector};
+
+/// Lists the cells of all open faces, and of edges and corners between them.
+pub(crate) fn open_faces<L: Lattice<Q>, const Q: usize>(
+    setup: &Setup<L::Dim>,
+    grid: &Grid,
+    cover: &Cover,
+) -> Open {
+    let lister = Lister { setup, grid, cover };
+    let mut open = Open::default();
+    for axis in 0..L::Dim::N {
+        for (side, face) in setup.faces[axis].iter().enumerate().filter(|(_, face)| face.is_open()) {
+            let mut inward = [0; 3];
+            inward[axis] = if side == 0 { 1 } else { -1 };
+            open.faces.extend(lister.face(face, axis, inward));
+        }
+    }
+    // Edges before corners.
+    for count in 2..=3 {
+        for number in 0..27 {
+            let inward = [number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1];
+            if inward.iter().filter(|way| **way != 0).count() == count {
+                open.edges.extend(lister.edge(inward));
+            }
+        }
+    }
+    open
+}
+
+struct Lister<'a, D: Dim> {
+    setup: &'a Setup<D>,
+    grid: &'a Grid,
+    cover: &'a Cover,
+}
+
+impl<D: Dim> Lister<'_, D> {
+    fn is_fluid(&self, cell: [usize; 3]) -> bool {
+        self.cover.is_empty() || self.cover[cell_index(self.setup.cells, cell)] == 0
+    }
+
+    fn place(&self, cell: [usize; 3]) -> usize {
+        self.grid.place(cell.map(|x| x as i64))
+    }
+
+    /// The open face on the side away from `inward` along an axis.
+    fn open_face(&self, axis: usize, inward: i32) -> Option<&Face<D>> {
+        let side = if inward == 1 { 0 } else { 1 };
+        Some(&self.setup.faces[axis][side]).filter(|face| inward != 0 && face.is_open())
+    }
+
+    /// Fluid cells that lie on the open faces away from `inward` and on no other.
+    fn cells(&self, inward: [i32; 3]) -> impl Iterator<Item = [usize; 3]> {
+        let (mut low, mut high) = ([0; 3], self.setup.cells);
+        for axis in 0..D::N {
+            let last = self.setup.cells[axis] - 1;
+            match inward[axis] {
+                1 => high[axis] = 1,
+                -1 => low[axis] = last,
+                _ => {
+                    low[axis] += usize::from(self.open_face(axis, 1).is_some());
+                    high[axis] -= usize::from(self.open_face(axis, -1).is_some());
+                }
+            }
+        }
+        cells_of(low, high).filter(|cell| self.is_fluid(*cell))
+    }
+
+    /// Velocity of a profile at the centre of a cell, in lattice units.
+    fn velocity(&self, profile: &crate::Profile<D>, cell: [usize; 3]) -> [f64; 3] {
+        let centre = centre_of(self.setup, cell.map(|x| x as i64));
+        (profile.0)(centre).padded().map(|c| c / self.setup.lattice_speed())
+    }
+
+    fn face(&self, face: &Face<D>, axis: usize, inward: [i32; 3]) -> Option<OpenFace> {
+        let known = if matches!(face, Face::Velocity(..)) { Known::Velocity } else { Known::Density };
+        let cells = self.cells(inward).map(|cell| {
+            let mut velocity = face.profile().map_or([0.0; 3], |profile| self.velocity(profile, cell));
+            if known == Known::Density {
+                velocity[axis] = 0.0;
+            }
+            let excess = face.pressure().map_or(0.0, |pressure| self.setup.density_excess(pressure));
+            OpenCell { place: self.place(cell), velocity, excess }
+        });
+        Some(OpenFace { axis, inward: inward[axis], known, scheme: face.scheme()?, cells: cells.collect() })
+    }
+
+    fn edge(&self, inward: [i32; 3]) -> Option<OpenEdge> {
+        let mut faces = Vec::new();
+        for axis in (0..3).filter(|axis| inward[*axis] != 0) {
+            faces.push((axis, self.open_face(axis, inward[axis])?));
+        }
+        let regularised = faces.iter().any(|(_, face)| face.scheme() == Some(OpenScheme::Regularised));
+        let scheme = if regularised { OpenScheme::Regularised } else { OpenScheme::ZouHe };
+        let pressures: Vec<f64> = faces.iter().filter_map(|(_, face)| face.pressure()).collect();
+        let cells = self.cells(inward).map(|cell| EdgeCell {
+            place: self.place(cell),
+            velocity: self.edge_velocity(&faces, cell),
+            excess: mean(pressures.iter().map(|pressure| self.setup.density_excess(*pressure))),
+            beside: if pressures.is_empty() { self.beside(cell, inward) } else { Vec::new() },
+        });
+        Some(OpenEdge { inward, scheme, cells: cells.collect() })
+    }
+
+    /// Mean of what faces with a velocity give; without those, of what the others give along themselves.
+    fn edge_velocity(&self, faces: &[(usize, &Face<D>)], cell: [usize; 3]) -> [f64; 3] {
+        let has_velocity = faces.iter().any(|(_, face)| matches!(face, Face::Velocity(..)));
+        std::array::from_fn(|axis| {
+            let giving = faces.iter().filter(|(normal, face)| {
+                if has_velocity { matches!(face, Face::Velocity(..)) } else { *normal != axis }
+            });
+            mean(
+                giving.map(|(_, face)| {
+                    face.profile().map_or(0.0, |profile| self.velocity(profile, cell)[axis])
+                }),
+            )
+        })
+    }
+
+    /// Cells from which the density of an edge follows: exact where it varies linearly; the mean of those that are
+    /// fluid near obstacles.
+    fn beside(&self, cell: [usize; 3], inward: [i32; 3]) -> Vec<(usize, f64)> {
+        let inner = |axis: usize| (cell[axis] as i64 + i64::from(inward[axis])) as usize;
+        let axes: Vec<usize> = (0..3).filter(|axis| inward[*axis] != 0).collect();
+        let mut near = Vec::new();
+        for &axis in &axes {
+            let mut beside = cell;
+            beside[axis] = inner(axis);
+            near.push(beside);
+        }
+        let across: [usize; 3] = std::array::from_fn(inner);
+        let weight = 1.0 / (axes.len() - 1) as f64;
+        if near.iter().chain([&across]).all(|cell| self.is_fluid(*cell)) {
+            let near = near.iter().map(|cell| (self.place(*cell), weight));
+            return near.chain([(self.place(across), -weight)]).collect();
+        }
+        near.push(across);
+        near.retain(|cell| self.is_fluid(*cell));
+        let weight = 1.0 / near.len().max(1) as f64;
+        near.iter().map(|cell| (self.place(*cell), weight)).collect()
+    }
+}
+
+/// Mean; zero of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+    sum / f64::from(count.max(1))
+}
