@@ -174,7 +174,10 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             match face {
                 Face::Periodic => wrapped[axis] = cell[axis].rem_euclid(last),
                 Face::FreeSlip => mirror[axis] = true,
-                Face::Velocity(..) | Face::Pressure(..) | Face::PressureAlong(..) => is_open = true,
+                Face::Velocity(..)
+                | Face::Pressure(..)
+                | Face::PressureAlong(..)
+                | Face::Absorbing { .. } => is_open = true,
                 // In a corner, the wall that moves less.
                 Face::Wall(velocity) => {
                     let velocity = velocity.padded();

@@ -6,6 +6,7 @@
 //! of directions that pass by the edge outside of the fluid enter from neither end ("buried"): equilibrium gives
 //! their momentum, the density given fixes their sum.
 
+use crate::absorbing::Flowing;
 use crate::lattice::{Lattice, opposite};
 use crate::open::{OpenScheme, dot, equilibrium, moments, regularise};
 use crate::populations::Populations;
@@ -30,11 +31,14 @@ pub(crate) struct EdgeCell {
     pub(crate) excess: f64,
     /// Places from whose density that of this cell follows, with weights; none where it is given.
     pub(crate) beside: Vec<(usize, f64)>,
+    /// Places whose velocity is added, with weights; none where it is given.
+    pub(crate) carried: Vec<(usize, f64)>,
 }
 
 impl OpenEdge {
     pub(crate) fn bytes(&self) -> usize {
-        let beside: usize = self.cells.iter().map(|cell| cell.beside.capacity()).sum();
+        let beside: usize =
+            self.cells.iter().map(|cell| cell.beside.capacity() + cell.carried.capacity()).sum();
         self.cells.capacity() * size_of::<EdgeCell>() + beside * size_of::<(usize, f64)>()
     }
 
@@ -49,14 +53,20 @@ impl OpenEdge {
     ) {
         for cell in &self.cells {
             let entering = |place: usize| populations.entering::<L, Q>(place).map(T::double);
-            let mut excess = cell.excess;
+            let (mut excess, mut velocity) = (cell.excess, cell.velocity);
             for &(place, weight) in &cell.beside {
                 excess += weight * moments::<L, Q>(&entering(place), force).0;
             }
+            for &(place, weight) in &cell.carried {
+                let flowing = Flowing::of::<L, T, Q>(populations, place, force);
+                for axis in 0..3 {
+                    velocity[axis] += weight * flowing.velocity[axis];
+                }
+            }
             let mut f = entering(cell.place);
-            fill::<L, Q>(&mut f, self.inward, cell.velocity, excess, force);
+            fill::<L, Q>(&mut f, self.inward, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
-                regularise::<L, Q>(&mut f, excess, cell.velocity, force);
+                regularise::<L, Q>(&mut f, excess, velocity, force);
             }
             populations.set_entering::<L, Q>(cell.place, f.map(T::of));
         }
@@ -76,11 +86,13 @@ fn fill<L: Lattice<Q>, const Q: usize>(
     let is_bounced = |i: usize| enters(i) && !enters(opposite(i));
     let is_buried = |i: usize| enters(i) && enters(opposite(i));
     for i in (0..Q).filter(|i| is_bounced(*i)) {
-        f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * dot(L::VELOCITIES[i], u);
+        let (along, pushed) = (dot(L::VELOCITIES[i], u), dot(L::VELOCITIES[i], force));
+        f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * along - 3.0 * L::WEIGHTS[i] * pushed;
     }
     let at_rest = equilibrium::<L, Q>(excess, u);
     for i in (0..Q).filter(|i| is_buried(*i)) {
-        f[i] = at_rest[i] + buried_departure::<L, Q>(f, &at_rest, inward, i);
+        let pushed = dot(L::VELOCITIES[i], force);
+        f[i] = at_rest[i] - 1.5 * L::WEIGHTS[i] * pushed + buried_departure::<L, Q>(f, &at_rest, inward, i);
     }
     let (_, momentum) = moments::<L, Q>(f, force);
     for axis in 0..3 {

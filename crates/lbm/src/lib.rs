@@ -33,7 +33,7 @@
 //! | [`Operator`] | one, two or multiple relaxation times, regularised | \[Qian1992; Ginzburg2008; Lallemand2000; DHumieres2002; LattChopard2006\] |
 //! | eddy viscosity | Smagorinsky in closed form, `(C h)^2 sqrt(2 S:S)` | \[Hou1996\] |
 //! | body force | second order, relaxed by the same rates | \[Guo2002\] |
-//! | [`Face`] | periodic, wall at rest or moving, free slip, velocity, pressure | \[ZouHe1997; HechtHarting2010; Latt2008\] |
+//! | [`Face`] | periodic, wall at rest or moving, free slip, velocity, pressure, absorbing | \[ZouHe1997; HechtHarting2010; Latt2008; PoinsotLele1992; IzquierdoFueyo2008\] |
 //! | [`Obstacle`] | any [`Shape`]; half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
 //!
@@ -47,6 +47,7 @@
 // Components and directions index several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
+mod absorbing;
 mod boundary;
 mod collision;
 mod edges;

@@ -6,6 +6,7 @@
 //! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers. Where open faces
 //! meet, see [`crate::edges`].
 
+use crate::absorbing::{Flowing, Inner, Normal};
 use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
@@ -27,6 +28,8 @@ pub(crate) enum Known {
     Velocity,
     /// Density, and the velocity along the face.
     Density,
+    /// What travels inwards, see [`crate::absorbing`].
+    Wave,
 }
 
 /// All open faces, and the edges and corners in which they meet.
@@ -56,6 +59,8 @@ pub(crate) struct OpenFace {
     pub(crate) known: Known,
     pub(crate) scheme: OpenScheme,
     pub(crate) cells: Vec<OpenCell>,
+    /// Of a face that absorbs, for each cell.
+    pub(crate) inner: Vec<Inner>,
 }
 
 /// Populations in equilibrium, without their weights.
@@ -89,7 +94,9 @@ impl Open {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        let faces = self.faces.iter().map(|face| face.cells.capacity() * size_of::<OpenCell>());
+        let faces = self.faces.iter().map(|face| {
+            face.cells.capacity() * size_of::<OpenCell>() + face.inner.iter().map(Inner::bytes).sum::<usize>()
+        });
         faces.sum::<usize>() + self.edges.iter().map(OpenEdge::bytes).sum::<usize>()
     }
 
@@ -119,14 +126,34 @@ impl OpenFace {
         populations: &mut Populations<T>,
         force: [f64; 3],
     ) {
-        for &OpenCell { place, velocity, excess } in &self.cells {
+        let mut inner = self.inner.iter();
+        for &OpenCell { place, mut velocity, mut excess } in &self.cells {
             let mut f = populations.entering::<L, Q>(place).map(T::double);
+            if let Some(inner) = inner.next() {
+                let known = self.known_sum::<L, Q>(&f, force);
+                let normal = Normal { axis: self.axis, inward: f64::from(self.inward) };
+                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);
+                (excess, velocity) = inner.wave(known, excess, normal, flow_in);
+            }
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
                 regularise::<L, Q>(&mut f, excess, velocity, force);
             }
             populations.set_entering::<L, Q>(place, f.map(T::of));
         }
+    }
+
+    /// Density times one less the velocity inwards, which the known populations give.
+    fn known_sum<L: Lattice<Q>, const Q: usize>(&self, f: &[f64; Q], force: [f64; 3]) -> f64 {
+        let mut known = 1.0 - 0.5 * f64::from(self.inward) * force[self.axis];
+        for i in 0..Q {
+            known += match self.inward * L::VELOCITIES[i][self.axis] {
+                0 => f[i],
+                1 => 0.0,
+                _ => 2.0 * f[i],
+            };
+        }
+        known
     }
 
     /// Finds the unknown populations; returns density excess and velocity.
@@ -138,22 +165,18 @@ impl OpenFace {
         force: [f64; 3],
     ) -> (f64, [f64; 3]) {
         let inwards = |i: usize| self.inward * L::VELOCITIES[i][self.axis];
-        let mut known = 1.0 - 0.5 * f64::from(self.inward) * force[self.axis];
-        for i in 0..Q {
-            known += match inwards(i) {
-                0 => f[i],
-                1 => 0.0,
-                _ => 2.0 * f[i],
-            };
-        }
+        let known = self.known_sum::<L, Q>(f, force);
         match self.known {
             Known::Velocity => excess = known / (1.0 - f64::from(self.inward) * u[self.axis]) - 1.0,
-            Known::Density => u[self.axis] = f64::from(self.inward) * (1.0 - known / (1.0 + excess)),
+            Known::Density | Known::Wave => {
+                u[self.axis] = f64::from(self.inward) * (1.0 - known / (1.0 + excess))
+            }
         }
         let density = 1.0 + excess;
         for i in 0..Q {
             if inwards(i) == 1 {
-                f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * dot(L::VELOCITIES[i], u);
+                let (along, pushed) = (dot(L::VELOCITIES[i], u), dot(L::VELOCITIES[i], force));
+                f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * along - 3.0 * L::WEIGHTS[i] * pushed;
             }
         }
         let (_, momentum) = moments::<L, Q>(f, force);
