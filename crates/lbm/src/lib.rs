@@ -34,7 +34,7 @@
 //! | eddy viscosity | Smagorinsky in closed form, `(C h)^2 sqrt(2 S:S)` | \[Hou1996\] |
 //! | body force | second order, relaxed by the same rates | \[Guo2002\] |
 //! | [`Face`] | periodic, wall at rest or moving, free slip, velocity, pressure, absorbing | \[ZouHe1997; HechtHarting2010; Latt2008; PoinsotLele1992; IzquierdoFueyo2008\] |
-//! | [`Obstacle`] | any [`Shape`]; half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
+//! | [`Obstacle`] | any [`Shape`], also from an image ([`Bitmap`]); half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
 //!
 //! Limits: obstacles do not move from their place. Open faces bear less than the fluid within: in a stream of 0.1
@@ -48,9 +48,12 @@
 #![allow(clippy::needless_range_loop)]
 
 mod absorbing;
+mod bitmap;
 mod boundary;
 mod collision;
 mod edges;
+#[cfg(feature = "png")]
+mod image;
 mod kernel;
 mod lattice;
 mod lbm;
@@ -65,6 +68,7 @@ mod shape;
 mod show;
 mod solver;
 
+pub use bitmap::{Bitmap, Solid};
 pub use collision::{OddRate, Operator};
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
@@ -72,7 +76,7 @@ pub use links::WallScheme;
 pub use open::OpenScheme;
 pub use real::Real;
 pub use setup::{Face, Obstacle, Profile, Setup, SetupError};
-pub use shape::{Ball, Block, Polygon, Shape};
+pub use shape::{Ball, Block, Extruded, Polygon, Shape};
 
 /// A fluid in the plane, per metre of depth.
 pub type Lbm2 = Lbm<D2Q9, 9>;

@@ -102,3 +102,25 @@ impl Shape<granular_core::D2> for Polygon {
         self.corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)))
     }
 }
+
+/// A shape in the plane, made a body in space along z.
+#[derive(Clone, Debug)]
+pub struct Extruded<S> {
+    /// Cross-section.
+    pub shape: S,
+    /// Lowest z \[m\].
+    pub from: f64,
+    /// Highest z \[m\].
+    pub to: f64,
+}
+
+impl<S: Shape<granular_core::D2>> Shape<granular_core::D3> for Extruded<S> {
+    fn contains(&self, point: granular_core::glam::DVec3) -> bool {
+        self.from <= point.z && point.z <= self.to && self.shape.contains(point.truncate())
+    }
+
+    fn bounds(&self) -> (granular_core::glam::DVec3, granular_core::glam::DVec3) {
+        let (low, high) = self.shape.bounds();
+        (low.extend(self.from), high.extend(self.to))
+    }
+}

@@ -9,6 +9,7 @@ mod contract;
 mod lattices;
 mod limits;
 mod open;
+mod shapes;
 mod symmetry;
 
 #[global_allocator]
