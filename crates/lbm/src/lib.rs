@@ -62,6 +62,7 @@ mod open;
 mod openings;
 mod pages;
 mod populations;
+mod probes;
 mod real;
 mod setup;
 mod shape;
