@@ -3,7 +3,8 @@
 use crate::lattice::{Lattice, opposite};
 use crate::links::{Copies, Cut, Cuts, Port};
 use crate::obstacle::{Cover, Domain, cell_index, cells_of};
-use crate::open::{Known, OpenFace, dot};
+use crate::open::{Open, dot};
+use crate::openings::open_faces;
 use crate::populations::Grid;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
@@ -13,7 +14,7 @@ use granular_core::{Dim, Vector};
 pub(crate) struct Beyond<T> {
     pub(crate) copies: Copies<T>,
     pub(crate) obstacles: Vec<Cuts<T>>,
-    pub(crate) open: Vec<OpenFace>,
+    pub(crate) open: Open,
 }
 
 /// What a cell next to another one is.
@@ -55,7 +56,8 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
     }
 
     pub(crate) fn build<T: Real>(&self) -> Beyond<T> {
-        Beyond { copies: self.copies(), obstacles: self.obstacles(), open: self.open_faces() }
+        let open = open_faces::<L, Q>(self.setup, self.grid, self.cover);
+        Beyond { copies: self.copies(), obstacles: self.obstacles(), open }
     }
 
     /// Links of cells at faces to what is no obstacle.
@@ -119,7 +121,10 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             match face {
                 Face::Periodic => wrapped[axis] = cell[axis].rem_euclid(last),
                 Face::FreeSlip => mirror[axis] = true,
-                Face::Velocity(..) | Face::Pressure(..) => is_open = true,
+                Face::Velocity(..)
+                | Face::Pressure(..)
+                | Face::PressureAlong(..)
+                | Face::Absorbing { .. } => is_open = true,
                 // In a corner, the wall that moves less.
                 Face::Wall(velocity) => {
                     let velocity = velocity.padded();
@@ -206,38 +211,6 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             arm: arm.padded().map(|c| c / setup.spacing),
             velocity: wall,
         })
-    }
-
-    pub(crate) fn open_faces(&self) -> Vec<OpenFace> {
-        let setup = self.setup;
-        let mut found = Vec::new();
-        for axis in 0..L::Dim::N {
-            for (side, face) in setup.faces[axis].iter().enumerate() {
-                let (known, scheme) = match face {
-                    Face::Velocity(_, scheme) => (Known::Velocity, *scheme),
-                    Face::Pressure(_, scheme) => (Known::Density, *scheme),
-                    _ => continue,
-                };
-                let (mut low, mut high) = ([0; 3], setup.cells);
-                low[axis] = if side == 0 { 0 } else { setup.cells[axis] - 1 };
-                high[axis] = low[axis] + 1;
-                let cells = cells_of([low, high]).filter(|cell| self.is_fluid(*cell)).map(|cell| {
-                    let cell = cell.map(|x| x as i64);
-                    let place = self.grid.place(cell);
-                    match face {
-                        Face::Velocity(profile, _) => {
-                            let velocity = (profile.0)(self.domain.centre(cell)).padded();
-                            (place, velocity.map(|c| c / setup.lattice_speed()), 0.0)
-                        }
-                        Face::Pressure(pressure, _) => (place, [0.0; 3], setup.density_excess(*pressure)),
-                        _ => (place, [0.0; 3], 0.0),
-                    }
-                });
-                let inward = if side == 0 { 1 } else { -1 };
-                found.push(OpenFace { axis, inward, known, scheme, cells: cells.collect() });
-            }
-        }
-        found
     }
 }
 

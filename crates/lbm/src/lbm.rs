@@ -145,9 +145,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         for obstacle in &mut self.beyond.obstacles {
             obstacle.apply::<L, Q>(&mut self.populations);
         }
-        for face in &self.beyond.open {
-            face.apply::<L, T, Q>(&mut self.populations, self.physics.force);
-        }
+        self.beyond.open.apply::<L, T, Q>(&mut self.populations, self.physics.force);
     }
 
     /// Advances; the step must be that of the setup.

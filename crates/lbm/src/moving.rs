@@ -9,6 +9,7 @@ use crate::lattice::Lattice;
 use crate::lbm::Lbm;
 use crate::obstacle::{Domain, Range, cell_index, cells_of};
 use crate::open::equilibrium;
+use crate::openings::open_faces;
 use crate::real::Real;
 use granular_core::{Accepts, Dim, Linear, Motion, ObstacleMotion, Provides, Solver, StepError, Vector};
 
@@ -138,7 +139,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         }
         if faces_too {
             self.beyond.copies = builder.copies();
-            self.beyond.open = builder.open_faces();
+            self.beyond.open = open_faces::<L, Q>(&self.setup, &self.populations.grid, &self.cover);
         }
         self.beyond.obstacles = obstacles;
     }

@@ -3,8 +3,11 @@
 //!
 //! What enters from outside follows by bouncing the departure from equilibrium back, with the
 //! transverse momentum put right \[ZouHe1997; HechtHarting2010\]. The regularised form then rebuilds all populations of the cell
-//! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers.
+//! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers. Where open faces
+//! meet, see [`crate::edges`].
 
+use crate::absorbing::{Flowing, Inner, Normal};
+use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
 use crate::real::Real;
@@ -25,9 +28,29 @@ pub(crate) enum Known {
     Velocity,
     /// Density, and the velocity along the face.
     Density,
+    /// What travels inwards, see [`crate::absorbing`].
+    Wave,
 }
 
-/// Cells of one open face.
+/// All open faces, and the edges and corners in which they meet.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Open {
+    pub(crate) faces: Vec<OpenFace>,
+    /// Edges before corners: those read cells beside them.
+    pub(crate) edges: Vec<OpenEdge>,
+}
+
+/// A cell of an open face.
+#[derive(Clone, Debug)]
+pub(crate) struct OpenCell {
+    pub(crate) place: usize,
+    /// Lattice units.
+    pub(crate) velocity: [f64; 3],
+    /// Density over that at rest, minus one.
+    pub(crate) excess: f64,
+}
+
+/// Cells of one open face that lie on no other.
 #[derive(Clone, Debug)]
 pub(crate) struct OpenFace {
     pub(crate) axis: usize,
@@ -35,8 +58,9 @@ pub(crate) struct OpenFace {
     pub(crate) inward: i32,
     pub(crate) known: Known,
     pub(crate) scheme: OpenScheme,
-    /// Place, velocity and density excess, in lattice units.
-    pub(crate) cells: Vec<(usize, [f64; 3], f64)>,
+    pub(crate) cells: Vec<OpenCell>,
+    /// Of a face that absorbs, for each cell.
+    pub(crate) inner: Vec<Inner>,
 }
 
 /// Populations in equilibrium, without their weights.
@@ -64,20 +88,72 @@ pub(crate) fn moments<L: Lattice<Q>, const Q: usize>(f: &[f64; Q], force: [f64; 
     (f.iter().sum(), momentum)
 }
 
-impl OpenFace {
+impl Open {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        let faces = self.faces.iter().map(|face| {
+            face.cells.capacity() * size_of::<OpenCell>() + face.inner.iter().map(Inner::bytes).sum::<usize>()
+        });
+        faces.sum::<usize>() + self.edges.iter().map(OpenEdge::bytes).sum::<usize>()
+    }
+
+    /// Velocities that are given, in lattice units.
+    pub(crate) fn given_velocities(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let faces = self.faces.iter().flat_map(|face| &face.cells).map(|cell| cell.velocity);
+        faces.chain(self.edges.iter().flat_map(OpenEdge::given_velocities))
+    }
+
     pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
         force: [f64; 3],
     ) {
-        for &(place, velocity, excess) in &self.cells {
+        for face in &self.faces {
+            face.apply::<L, T, Q>(populations, force);
+        }
+        for edge in &self.edges {
+            edge.apply::<L, T, Q>(populations, force);
+        }
+    }
+}
+
+impl OpenFace {
+    fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        populations: &mut Populations<T>,
+        force: [f64; 3],
+    ) {
+        let mut inner = self.inner.iter();
+        for &OpenCell { place, mut velocity, mut excess } in &self.cells {
             let mut f = populations.entering::<L, Q>(place).map(T::double);
+            if let Some(inner) = inner.next() {
+                let known = self.known_sum::<L, Q>(&f, force);
+                let normal = Normal { axis: self.axis, inward: f64::from(self.inward) };
+                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);
+                (excess, velocity) = inner.wave(known, excess, normal, flow_in);
+            }
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
                 regularise::<L, Q>(&mut f, excess, velocity, force);
             }
             populations.set_entering::<L, Q>(place, f.map(T::of));
         }
+    }
+
+    /// Density times one less the velocity inwards, which the known populations give.
+    fn known_sum<L: Lattice<Q>, const Q: usize>(&self, f: &[f64; Q], force: [f64; 3]) -> f64 {
+        let mut known = 1.0 - 0.5 * f64::from(self.inward) * force[self.axis];
+        for i in 0..Q {
+            known += match self.inward * L::VELOCITIES[i][self.axis] {
+                0 => f[i],
+                1 => 0.0,
+                _ => 2.0 * f[i],
+            };
+        }
+        known
     }
 
     /// Finds the unknown populations; returns density excess and velocity.
@@ -89,22 +165,18 @@ impl OpenFace {
         force: [f64; 3],
     ) -> (f64, [f64; 3]) {
         let inwards = |i: usize| self.inward * L::VELOCITIES[i][self.axis];
-        let mut known = 1.0 - 0.5 * f64::from(self.inward) * force[self.axis];
-        for i in 0..Q {
-            known += match inwards(i) {
-                0 => f[i],
-                1 => 0.0,
-                _ => 2.0 * f[i],
-            };
-        }
+        let known = self.known_sum::<L, Q>(f, force);
         match self.known {
             Known::Velocity => excess = known / (1.0 - f64::from(self.inward) * u[self.axis]) - 1.0,
-            Known::Density => u[self.axis] = f64::from(self.inward) * (1.0 - known / (1.0 + excess)),
+            Known::Density | Known::Wave => {
+                u[self.axis] = f64::from(self.inward) * (1.0 - known / (1.0 + excess))
+            }
         }
         let density = 1.0 + excess;
         for i in 0..Q {
             if inwards(i) == 1 {
-                f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * dot(L::VELOCITIES[i], u);
+                let (along, pushed) = (dot(L::VELOCITIES[i], u), dot(L::VELOCITIES[i], force));
+                f[i] = f[opposite(i)] + 6.0 * L::WEIGHTS[i] * density * along - 3.0 * L::WEIGHTS[i] * pushed;
             }
         }
         let (_, momentum) = moments::<L, Q>(f, force);
@@ -128,7 +200,12 @@ impl OpenFace {
 }
 
 /// Keeps density, velocity and stress, and nothing else.
-fn regularise<L: Lattice<Q>, const Q: usize>(f: &mut [f64; Q], excess: f64, u: [f64; 3], force: [f64; 3]) {
+pub(crate) fn regularise<L: Lattice<Q>, const Q: usize>(
+    f: &mut [f64; Q],
+    excess: f64,
+    u: [f64; 3],
+    force: [f64; 3],
+) {
     let at_rest = equilibrium::<L, Q>(excess, u);
     let mut stress = [[0.0; 3]; 3];
     for i in 0..Q {

@@ -108,3 +108,25 @@ impl<D: Dim> Shape<D> for Polygon {
         (of(low.x, low.y, -ENDLESS), of(high.x, high.y, ENDLESS))
     }
 }
+
+/// A shape in the plane, made a body in space along z.
+#[derive(Clone, Debug)]
+pub struct Extruded<S> {
+    /// Cross-section.
+    pub shape: S,
+    /// Lowest z \[m\].
+    pub from: f64,
+    /// Highest z \[m\].
+    pub to: f64,
+}
+
+impl<S: Shape<granular_core::D2>> Shape<granular_core::D3> for Extruded<S> {
+    fn contains(&self, point: granular_core::glam::DVec3) -> bool {
+        self.from <= point.z && point.z <= self.to && self.shape.contains(point.truncate())
+    }
+
+    fn bounds(&self) -> (granular_core::glam::DVec3, granular_core::glam::DVec3) {
+        let (low, high) = self.shape.bounds();
+        (low.extend(self.from), high.extend(self.to))
+    }
+}

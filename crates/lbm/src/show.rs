@@ -9,13 +9,22 @@ use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, Ve
 /// Cells of a block of a sum.
 const BLOCK: usize = 4096;
 
-const FIELDS: [(&str, &str, &str); 5] = [
+const FIELDS: [(&str, &str, &str); 7] = [
     ("pressure", "Pa", "pressure over that at rest"),
     ("velocity", "m/s", "velocity"),
     ("speed", "m/s", "length of the velocity"),
     ("vorticity", "1/s", "curl of the velocity: a number in the plane, a vector in space"),
+    (
+        "q_criterion",
+        "1/s^2",
+        "half of the squared rotation less half of the squared strain: above zero in vortices",
+    ),
+    ("divergence", "1/s", "divergence of the velocity"),
     ("solid", "-", "number of the obstacle that covers the cell, 0 for fluid"),
 ];
+
+const STREAM_FUNCTION: (&str, &str, &str) =
+    ("stream_function", "m^2/s", "flow rate per depth between a point and the centre of the first cell");
 
 const NUMBERS: [(&str, &str, &str); 5] = [
     ("mass", "kg", "mass of the fluid"),
@@ -33,6 +42,9 @@ pub(crate) fn shown<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>) 
         kind,
     };
     let mut list: Vec<Shown> = FIELDS.map(|field| of(field, ShownAs::Field)).into();
+    if L::Dim::N == 2 {
+        list.push(of(STREAM_FUNCTION, ShownAs::Field));
+    }
     list.extend(NUMBERS.map(|number| of(number, ShownAs::Number)));
     for obstacle in &lbm.setup.obstacles {
         for axis in L::Dim::AXES {
@@ -124,6 +136,17 @@ fn show_fields<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, sink:
     if sink.wants("vorticity") {
         sink.field("vorticity", "1/s", L::Dim::spin_field(&lbm.vorticity()));
     }
+    if sink.wants("q_criterion") {
+        sink.field("q_criterion", "1/s^2", FieldRef::Scalar(&lbm.q_criterion()));
+    }
+    if sink.wants("divergence") {
+        sink.field("divergence", "1/s", FieldRef::Scalar(&lbm.divergence()));
+    }
+    if sink.wants("stream_function")
+        && let Some(values) = lbm.stream_function()
+    {
+        sink.field("stream_function", "m^2/s", FieldRef::Scalar(&values));
+    }
     if sink.wants("solid") {
         let values = lbm.map(|cell| lbm.covered_by(cell));
         sink.field("solid", "-", FieldRef::Index(&values));
@@ -169,7 +192,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// One value per cell, x fastest.
-    fn map<V: Copy + Default + Send>(&self, value: impl Fn([usize; 3]) -> V + Sync) -> Vec<V> {
+    pub(crate) fn map<V: Copy + Default + Send>(&self, value: impl Fn([usize; 3]) -> V + Sync) -> Vec<V> {
         let mut values = vec![V::default(); self.cells()];
         let blocks = Blocks::new(values.len(), BLOCK);
         blocks.for_each(&mut values[..], |block, values| {
@@ -213,7 +236,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// Derivative of the velocity along an axis \[1/s\].
-    fn slope(
+    pub(crate) fn slope(
         &self,
         velocities: &[<L::Dim as Dim>::Vec],
         cell: [usize; 3],

@@ -2,7 +2,6 @@
 
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
-use crate::open::Known;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
 use crate::{Operator, show};
@@ -24,10 +23,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             Face::Wall(velocity) => velocity.length(),
             _ => 0.0,
         });
-        let open = self.beyond.open.iter().filter(|face| face.known == Known::Velocity);
-        let entering = open.flat_map(|face| &face.cells).map(|(_, velocity, _)| {
-            velocity.iter().map(|c| c * c).sum::<f64>().sqrt() * setup.lattice_speed()
-        });
+        let entering = self
+            .beyond
+            .open
+            .given_velocities()
+            .map(|velocity| velocity.iter().map(|c| c * c).sum::<f64>().sqrt() * setup.lattice_speed());
         let bodies = setup.obstacles.iter().map(|body| {
             let (low, high) = body.shape.bounds();
             body.velocity.length() + body.spin.length() * 0.5 * (high - low).length()
@@ -90,7 +90,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let populations = self.populations.values.len() * size_of::<T>();
         let links = self.beyond.copies.bytes()
             + self.beyond.obstacles.iter().map(|cuts| cuts.bytes()).sum::<usize>()
-            + self.beyond.open.iter().map(|face| face.cells.capacity() * 40).sum::<usize>();
+            + self.beyond.open.bytes();
         let bytes = populations + links + self.runs.bytes() + 2 * self.cover.capacity();
         let mut left_out = Vec::new();
         let mut note = |is_off: bool, text: &str| {

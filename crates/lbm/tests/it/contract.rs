@@ -36,6 +36,29 @@ fn disk_in_stream() -> Lbm<D2Q9, 9, f32> {
     Lbm::new(setup).unwrap()
 }
 
+fn open_on_all_sides() -> Lbm3 {
+    let mut setup = Setup::new([12, 11, 9], 1e-3, 1e-6, 0.6);
+    let stream = Profile::new(|p: DVec3| DVec3::new(1e-3, 2e-3 * (300.0 * p.x).sin(), -1e-3));
+    let scheme = [OpenScheme::ZouHe, OpenScheme::Regularised];
+    for axis in 0..3 {
+        setup.faces[axis] =
+            [Face::Velocity(stream.clone(), scheme[axis % 2]), Face::Velocity(stream.clone(), scheme[1])];
+    }
+    setup.faces[0][1] = Face::PressureAlong(0.01, stream, OpenScheme::ZouHe);
+    setup.acceleration = DVec3::new(0.0, -1e-5, 0.0);
+    Lbm3::new(setup).unwrap()
+}
+
+fn absorbing_disk() -> Lbm2 {
+    let mut setup = Setup::new([40, 31, 1], 1e-3, 1e-6, 0.6);
+    let stream = Profile::uniform(DVec2::new(2e-3, 0.0));
+    setup.faces[0] = [Face::Velocity(stream, OpenScheme::ZouHe), Face::absorbing(0.01)];
+    setup.faces[1] = [Face::FreeSlip, Face::absorbing(0.0)];
+    setup.acceleration = DVec2::new(0.0, -1e-5);
+    setup.obstacles.push(Obstacle::new("disk", Ball { centre: DVec2::new(0.03, 0.02), radius: 0.0082 }));
+    Lbm2::new(setup).unwrap()
+}
+
 fn step(tau: f64) -> f64 {
     Setup::<granular_core::D2>::new([2, 2, 1], 1e-3, 1e-6, tau).time_step
 }
@@ -43,3 +66,5 @@ fn step(tau: f64) -> f64 {
 contract_tests!(cavity_with_closure, cavity, step(0.56));
 contract_tests!(sphere_between_open_faces, spheres, step(0.7));
 contract_tests!(disk_through_a_periodic_face_in_single_precision, disk_in_stream, step(0.6));
+contract_tests!(open_on_all_sides_in_space, open_on_all_sides, step(0.6));
+contract_tests!(disk_beside_absorbing_faces, absorbing_disk, step(0.6));

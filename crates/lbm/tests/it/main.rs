@@ -3,10 +3,14 @@
 // Outside `#[test]` functions clippy does not see that this is a test.
 #![allow(clippy::unwrap_used)]
 
+mod absorbing;
 mod channel;
 mod contract;
 mod lattices;
 mod limits;
+mod open;
+mod probes;
+mod shapes;
 mod symmetry;
 
 #[global_allocator]
