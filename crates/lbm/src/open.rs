@@ -59,8 +59,8 @@ pub(crate) struct OpenFace {
     pub(crate) known: Known,
     pub(crate) scheme: OpenScheme,
     pub(crate) cells: Vec<OpenCell>,
-    /// Of a face that absorbs, for each cell.
-    pub(crate) inner: Vec<Inner>,
+    /// Of a face that absorbs, for each cell; those without hold the pressure given.
+    pub(crate) inner: Vec<Option<Inner>>,
 }
 
 /// Populations in equilibrium, without their weights.
@@ -95,7 +95,8 @@ impl Open {
 
     pub(crate) fn bytes(&self) -> usize {
         let faces = self.faces.iter().map(|face| {
-            face.cells.capacity() * size_of::<OpenCell>() + face.inner.iter().map(Inner::bytes).sum::<usize>()
+            face.cells.capacity() * size_of::<OpenCell>()
+                + face.inner.iter().flatten().map(Inner::bytes).sum::<usize>()
         });
         faces.sum::<usize>() + self.edges.iter().map(OpenEdge::bytes).sum::<usize>()
     }
@@ -129,7 +130,7 @@ impl OpenFace {
         let mut inner = self.inner.iter();
         for &OpenCell { place, mut velocity, mut excess } in &self.cells {
             let mut f = populations.entering::<L, Q>(place).map(T::double);
-            if let Some(inner) = inner.next() {
+            if let Some(Some(inner)) = inner.next() {
                 let known = self.known_sum::<L, Q>(&f, force);
                 let normal = Normal { axis: self.axis, inward: f64::from(self.inward) };
                 let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);

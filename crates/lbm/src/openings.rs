@@ -165,18 +165,18 @@ impl<D: Dim> Lister<'_, D> {
         }
     }
 
-    /// What an absorbing face needs of the cell within.
-    fn inner(&self, cell: [usize; 3], axis: usize, inward: [i32; 3], share: f64) -> Inner {
+    /// What an absorbing face needs of the cell within; none if that is not fluid.
+    fn inner(&self, cell: [usize; 3], axis: usize, inward: [i32; 3], share: f64) -> Option<Inner> {
         let mut within = cell;
         within[axis] = (cell[axis] as i64 + i64::from(inward[axis])) as usize;
         if !self.is_fluid(within) {
-            within = cell;
+            return None;
         }
         let sides = (0..D::N)
             .filter(|across| *across != axis)
             .map(|across| (across, [self.side(within, across, -1), self.side(within, across, 1)]));
         let viscosity = (self.setup.tau() - 0.5) / 3.0;
-        Inner { place: self.place(within), share, viscosity, sides: sides.collect() }
+        Some(Inner { place: self.place(within), share, viscosity, sides: sides.collect() })
     }
 
     /// What lies beside a cell along an axis.

@@ -271,6 +271,11 @@ impl<D: Dim> Setup<D> {
             ));
         }
         for axis in 0..D::N {
+            // What is carried over to an edge or an absorbing face must not come from the face opposite.
+            if self.cells[axis] < 3 && self.faces[axis].iter().all(Face::is_open) {
+                let value = format!("{} between open faces along axis {axis}", self.cells[axis]);
+                return Err(SetupError::new("cells", value, "at least 3"));
+            }
             for (side, face) in self.faces[axis].iter().enumerate() {
                 let cells = self.cells[axis] as f64;
                 if let Face::Absorbing { relaxation, .. } = face

@@ -167,6 +167,7 @@ fn faces_without_a_level_of_pressure_or_with_a_value_that_is_none_are_refused() 
     let error = refused(|s| s.faces[0][1] = s.faces[0][0].clone());
     assert_eq!(error.what, "faces");
     assert!(error.allowed.contains("pressure on one open face"), "{error}");
+    assert_eq!(refused(|s| s.cells[1] = 2).what, "cells");
     let error = refused(|s| s.faces[1][1] = Face::Pressure(f64::NAN, OpenScheme::ZouHe));
     assert_eq!(error.what, "pressure of a face");
     let error = refused(|s| {
