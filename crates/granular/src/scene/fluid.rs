@@ -75,8 +75,10 @@ pub enum FaceSpec {
     FreeSlip,
     /// The fluid enters at a velocity.
     Inflow(ProfileSpec),
-    /// The fluid leaves, or enters, at a pressure over that at rest.
+    /// The fluid leaves, or enters, at a pressure over that at rest, and straight through the face. Sound comes back.
     Outflow(Pressure),
+    /// Sound leaves, and the pressure settles at this one over that at rest.
+    Absorbing(Pressure),
 }
 
 /// Velocities on a face.

@@ -137,7 +137,9 @@ impl Reader<'_> {
                 return None;
             }
             cells[axis] = count as usize;
-            let is_open = |face: &Face<D>| matches!(face, Face::Velocity(..) | Face::Pressure(..));
+            let is_open = |face: &Face<D>| {
+                matches!(face, Face::Velocity(..) | Face::Pressure(..) | Face::Absorbing { .. })
+            };
             if faces[axis].iter().all(is_open) {
                 cells[axis] += 1;
                 origin -= D::Vec::along(axis, 0.5 * spacing);
@@ -205,6 +207,7 @@ impl Reader<'_> {
                 };
                 Face::Velocity(Profile::new(parabola), OpenScheme::Regularised)
             }
+            FaceSpec::Absorbing(pressure) => Face::absorbing(pressure.value()),
             FaceSpec::Outflow(pressure) => Face::Pressure(pressure.value(), OpenScheme::Regularised),
         })
     }
