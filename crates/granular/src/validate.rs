@@ -27,6 +27,7 @@ mod reference;
 pub(crate) mod restitution;
 mod rolling;
 mod row;
+pub mod stability;
 mod table;
 
 pub use row::{Row, Tier};

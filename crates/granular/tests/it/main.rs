@@ -9,6 +9,7 @@ mod command_disk;
 mod command_interrupt;
 mod command_snapshots;
 mod scenes;
+mod stability;
 mod support;
 mod validation;
 mod workspace;
