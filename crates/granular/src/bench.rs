@@ -6,6 +6,7 @@
 
 mod column;
 mod figure;
+mod flows;
 pub mod lattice;
 mod restitution;
 pub mod speed;
@@ -25,6 +26,12 @@ pub enum Precision {
     Restitution,
     /// Run-out of a column over stiffness and step, as a mean over seeds.
     Column,
+    /// Decaying vortices over cells, Mach number, operator and storage: a minute.
+    TaylorGreen,
+    /// A lid-driven cavity over the same: one to two minutes.
+    Cavity,
+    /// The unsteady cylinder of Schaefer and Turek over the same: five to eight minutes on two cores.
+    SchaeferTurek,
 }
 
 impl Precision {
@@ -33,6 +40,9 @@ impl Precision {
         match self {
             Self::Restitution => "restitution",
             Self::Column => "column",
+            Self::TaylorGreen => "taylor-green",
+            Self::Cavity => "cavity",
+            Self::SchaeferTurek => "schaefer-turek",
         }
     }
 }
@@ -45,6 +55,9 @@ pub fn precision(case: Precision) -> Result<Study, Failure> {
     match case {
         Precision::Restitution => restitution::study(),
         Precision::Column => column::study(),
+        Precision::TaylorGreen => flows::taylor_green(),
+        Precision::Cavity => flows::cavity(),
+        Precision::SchaeferTurek => flows::schaefer_turek(),
     }
 }
 

@@ -16,7 +16,7 @@ mod claims;
 pub(crate) mod collapse;
 mod conservation;
 pub(crate) mod fit;
-mod fluid;
+pub(crate) mod fluid;
 mod grading;
 pub(crate) mod impact;
 mod incline;
@@ -27,6 +27,7 @@ mod reference;
 pub(crate) mod restitution;
 mod rolling;
 mod row;
+pub mod stability;
 mod table;
 
 pub use row::{Row, Tier};

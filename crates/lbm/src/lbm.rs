@@ -173,15 +173,20 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             let (excess, _) = self.moments(*place);
             excess.is_nan() || excess.abs() >= 0.5
         });
-        let cell = found.map_or([0; 3], |(cell, _)| cell);
-        let (excess, momentum) = self.moments(self.populations.grid.place(cell.map(|x| x as i64)));
-        if excess.is_finite() && momentum.iter().all(|c| c.is_finite()) {
+        // What the guard saw may be a population at rest whose cell has a density that others make up for.
+        let deviation = |place: usize| self.populations.entering::<L, Q>(place)[0].double().abs();
+        let worst = || self.fluid().max_by(|a, b| deviation(a.1).total_cmp(&deviation(b.1)));
+        let (cell, place) = found.or_else(worst).expect("some cells are fluid");
+        let (excess, momentum) = self.moments(place);
+        let resting = deviation(place) / L::WEIGHTS[0];
+        if excess.is_finite() && resting.is_finite() && momentum.iter().all(|c| c.is_finite()) {
+            let by_density = found.is_some();
             return StepError::TooStiff {
                 what: format!("density over that at rest in cell {cell:?} after step {}", self.steps),
-                value: 1.0 + excess,
-                allowed: 1.5,
+                value: 1.0 + if by_density { excess } else { resting },
+                allowed: 1.0 + if by_density { 0.5 } else { BEYOND / L::WEIGHTS[0] },
                 hint: "the flow is too fast or too little viscous for its cells: take a smaller step (Mach number) \
-                       or smaller cells (grid Reynolds number)"
+                       or smaller cells (grid Reynolds number), or the operator Regularised"
                     .to_owned(),
             };
         }

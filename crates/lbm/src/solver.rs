@@ -2,9 +2,10 @@
 
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
+use crate::open::OpenScheme;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
-use crate::{Operator, show};
+use crate::{OddRate, Operator, show};
 use granular_core::{
     Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Motion, Section, Shown, SnapshotError, Solver,
     StepError, StepLimit, StepRule, Vector,
@@ -12,8 +13,55 @@ use granular_core::{
 
 /// Largest Mach number; errors of compressibility grow with its square.
 const MACH: f64 = 0.3;
-/// Largest speed times cell over viscosity that one relaxation time bears, and others.
-const GRID_REYNOLDS: [f64; 2] = [10.0, 50.0];
+/// Largest constant of the closure below which it counts as none.
+const CLOSURE: f64 = 0.1;
+
+/// Largest grid Reynolds numbers, of the flow (`u h / nu`) and of sound (`c_s h / nu`).
+type Borne = [f64; 2];
+/// No limit was found on sound.
+const ANY: f64 = f64::INFINITY;
+
+/// What flows that start at full speed bear, for each operator: between walls or periodic, with Zou-He faces, with
+/// regularised faces; each without and with a closure of constant 0.1.
+///
+/// Set from what `granular validate stability lbm` measured in the plane on shear layers, cavities and jets of 24 and 32
+/// cells up to Mach 0.3, with a margin (docs/lbm-studies.md): fitted to these flows, not derived, and 1000 is the largest
+/// tried. Two relaxation times were run with `Lambda` 3/16, multiple ones with the rates of [`Operator::EXACT_WALLS`] and
+/// [`Operator::KUMAR`]; others may bear less.
+const BORNE: [[Borne; 6]; 5] = [
+    // One relaxation time.
+    [[12.0, ANY], [22.0, ANY], [10.0, 25.0], [22.0, 55.0], [12.0, 100.0], [22.0, 190.0]],
+    // Two.
+    [[25.0, ANY], [60.0, ANY], [11.0, ANY], [13.0, ANY], [11.0, ANY], [19.0, ANY]],
+    // Multiple, odd rate by `Lambda`.
+    [[9.0, ANY], [150.0, ANY], [9.0, ANY], [150.0, ANY], [9.0, ANY], [10.0, ANY]],
+    // Multiple, odd rate given.
+    [[50.0, ANY], [1000.0, ANY], [50.0, 50.0], [1000.0, 3000.0], [50.0, 140.0], [1000.0, ANY]],
+    // Regularised.
+    [[80.0, ANY], [1000.0, ANY], [80.0, 140.0], [800.0, ANY], [80.0, 140.0], [800.0, ANY]],
+];
+
+/// What a flow bears; see [`BORNE`].
+fn borne<D: Dim>(setup: &Setup<D>) -> Borne {
+    let row = match setup.operator {
+        Operator::SingleRelaxation => 0,
+        Operator::TwoRelaxation { .. } => 1,
+        Operator::MultipleRelaxation { odd: OddRate::Magic(_), .. } => 2,
+        Operator::MultipleRelaxation { odd: OddRate::Rate(_), .. } => 3,
+        Operator::Regularised => 4,
+    };
+    let is_closed = usize::from(setup.smagorinsky.is_some_and(|constant| constant >= CLOSURE));
+    let schemes = setup.faces.iter().flatten().filter_map(Face::scheme);
+    // Each scheme has limits of its own: the lowest binds.
+    let columns = schemes.map(|scheme| match scheme {
+        OpenScheme::ZouHe => 2,
+        OpenScheme::Regularised => 4,
+    });
+    std::iter::once(0).chain(columns).fold([ANY; 2], |[flow, sound], column| {
+        let [other_flow, other_sound] = BORNE[row][column + is_closed];
+        [flow.min(other_flow), sound.min(other_sound)]
+    })
+}
 
 impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     /// Largest speed that faces, obstacles and the setup name \[m/s\].
@@ -70,8 +118,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                  it, and the error falls with the square of the step"
             )),
         });
-        let single = setup.operator == Operator::SingleRelaxation && setup.smagorinsky.is_none();
-        let allowed = GRID_REYNOLDS[usize::from(!single)];
+        let [allowed, of_sound] = borne(setup);
         report.bounds.push(Bound {
             name: "grid Reynolds number",
             value: speed * spacing / viscosity,
@@ -84,6 +131,20 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 allowed * viscosity / speed
             )),
         });
+        if of_sound.is_finite() {
+            report.bounds.push(Bound {
+                name: "grid Reynolds number of sound",
+                value: sound * spacing / viscosity,
+                allowed: of_sound,
+                unit: "",
+                refuses: false,
+                why: format!(
+                    "speed of sound times cell over viscosity; open faces excite what too little viscosity does not damp: a \
+                     relaxation time of {:.4} steps keeps it, a closure or another operator bears more",
+                    0.5 + 3.0_f64.sqrt() / of_sound
+                ),
+            });
+        }
     }
 
     fn memory_in_use(&self) -> Memory {

@@ -1,6 +1,6 @@
 //! Run-out of a column: error of an ensemble mean against stiffness, step and run time.
 
-use super::study::{Point, Study};
+use super::study::{CONTACT, Point, Study};
 use crate::failure::Failure;
 use crate::validate::collapse::{Collapse, Fallen};
 use crate::validate::fit::{mean_and_error, median};
@@ -78,5 +78,6 @@ pub(super) fn study() -> Result<Study, Failure> {
         "wall time of one run on one thread, settling included, median over seeds".to_owned(),
     ];
     let error = "error of the mean run-out over its reference [-]";
-    Ok(Study { case: "column", error, points, orders: BTreeMap::new(), notes }.mark_front())
+    Ok(Study { case: "column", error, resolution: CONTACT, points, orders: BTreeMap::new(), notes }
+        .mark_front())
 }

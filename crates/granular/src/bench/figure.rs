@@ -16,8 +16,10 @@ pub(super) fn chart(study: &Study) -> Chart {
         let bands = points.iter().map(|point| point.band).collect();
         let order = study.orders.get(scheme).map_or(String::new(), |order| format!(", order {order:.2}"));
         let line = Series::new(format!("{scheme}{order}"), places.clone(), Style::Line);
-        let bars = Series::new("", places, Style::ErrorBars(bands));
-        chart = chart.with(line.colour(colour)).with(bars.colour(colour));
+        chart = chart.with(line.colour(colour));
+        if points.iter().any(|point| point.band > 0.0) {
+            chart = chart.with(Series::new("", places, Style::ErrorBars(bands)).colour(colour));
+        }
     }
     chart
 }

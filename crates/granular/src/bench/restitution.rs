@@ -1,6 +1,6 @@
 //! Restitution of a normal impact: error against step and run time.
 
-use super::study::{Point, Study};
+use super::study::{CONTACT, Point, Study};
 use crate::failure::Failure;
 use crate::validate::fit::{mean_and_error, median, order, root_mean_square};
 use crate::validate::impact::Impact;
@@ -41,7 +41,7 @@ pub(super) fn study() -> Result<Study, Failure> {
         format!("wall time of the steps of one impact of two disks on one thread, median of {ROUNDS} rounds"),
     ];
     let error = "error of the restitution [-]";
-    Ok(Study { case: "restitution", error, points, orders, notes }.mark_front())
+    Ok(Study { case: "restitution", error, resolution: CONTACT, points, orders, notes }.mark_front())
 }
 
 fn measure(impact: Impact, scheme: &str) -> Result<Point, Failure> {

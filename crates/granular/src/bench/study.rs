@@ -4,12 +4,15 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
+/// Resolution of grains.
+pub(super) const CONTACT: &str = "steps per contact";
+
 /// Error and cost at one resolution.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
     /// Scheme or parameter that stays the same along a curve.
     pub scheme: String,
-    /// Steps per contact time.
+    /// How fine it is, in the unit of the study.
     pub resolution: f64,
     /// Step \[s\].
     pub dt: f64,
@@ -32,6 +35,8 @@ pub struct Study {
     pub case: &'static str,
     /// What the error is.
     pub error: &'static str,
+    /// What the resolution of a point counts.
+    pub resolution: &'static str,
     /// All points.
     pub points: Vec<Point>,
     /// Fitted order of convergence of each scheme.
@@ -78,15 +83,15 @@ impl fmt::Display for Study {
         writeln!(f, "{}: {}", self.case, self.error)?;
         writeln!(
             f,
-            "  {:<24} {:>16} {:>11} {:>11} {:>11} {:>6} {:>11}  pareto",
-            "scheme", "steps/contact", "dt [s]", "error", "band", "seeds", "wall [s]"
+            "  {:<30} {:>17} {:>11} {:>11} {:>11} {:>6} {:>11}  pareto",
+            "scheme", self.resolution, "dt [s]", "error", "band", "seeds", "wall [s]"
         )?;
         for point in &self.points {
             let Point { scheme, resolution, dt, error, band, seeds, seconds, pareto } = point;
             let mark = if *pareto { "*" } else { "" };
             writeln!(
                 f,
-                "  {scheme:<24} {resolution:>16.2} {dt:>11.3e} {error:>11.3e} {band:>11.1e} {seeds:>6} \
+                "  {scheme:<30} {resolution:>17.2} {dt:>11.3e} {error:>11.3e} {band:>11.1e} {seeds:>6} \
                  {seconds:>11.3e}  {mark}"
             )?;
         }
@@ -114,7 +119,8 @@ mod tests {
             pareto: false,
         };
         let points = vec![point(1.0, 0.1), point(2.0, 0.2), point(3.0, 0.01)];
-        let study = Study { case: "c", error: "e", points, orders: BTreeMap::new(), notes: vec![] };
+        let study =
+            Study { case: "c", error: "e", resolution: "r", points, orders: BTreeMap::new(), notes: vec![] };
         let front: Vec<bool> = study.mark_front().points.iter().map(|point| point.pareto).collect();
         assert_eq!(front, [true, false, true]);
     }

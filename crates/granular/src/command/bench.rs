@@ -34,6 +34,12 @@ pub(super) enum Case {
     Restitution,
     /// Run-out of a column over stiffness and step; takes minutes.
     Column,
+    /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
+    TaylorGreen,
+    /// Lid-driven cavity over the same; takes one to two minutes.
+    Cavity,
+    /// Unsteady cylinder in a channel over the same; takes five to eight minutes on two cores.
+    SchaeferTurek,
 }
 
 /// Solvers.
@@ -71,6 +77,9 @@ impl Bench {
                 let case = match case {
                     Case::Restitution => Precision::Restitution,
                     Case::Column => Precision::Column,
+                    Case::TaylorGreen => Precision::TaylorGreen,
+                    Case::Cavity => Precision::Cavity,
+                    Case::SchaeferTurek => Precision::SchaeferTurek,
                 };
                 let study = bench::precision(case)?;
                 let folder = out.unwrap_or_else(|| Path::new("bench").join(case.name()));

@@ -1,13 +1,23 @@
 //! `granular validate`.
 
 use super::{Common, show};
+use clap::builder::PossibleValuesParser;
 use granular::failure::Failure;
-use granular::validate::{self, Effort};
+use granular::validate::{self, Effort, stability};
 use serde_json::json;
 
 /// Flags of `granular validate`.
 #[derive(clap::Args, Debug)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(super) struct Validate {
+    #[command(subcommand)]
+    study: Option<Study>,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+#[derive(clap::Args, Debug)]
+struct Cases {
     /// Only cases whose name contains this.
     filter: Option<String>,
     /// Everything, not only what takes a few seconds.
@@ -15,15 +25,59 @@ pub(super) struct Validate {
     full: bool,
 }
 
+/// What is studied instead of cases.
+#[derive(clap::Subcommand, Debug)]
+enum Study {
+    /// Limits that a solver predicts beside those at which its runs fail; takes up to a minute. Exit code 1 when a
+    /// guard is silent, or a run fails within its bounds.
+    Stability {
+        /// Solver.
+        solver: Solver,
+        /// Finer; takes many minutes.
+        #[arg(long)]
+        full: bool,
+        /// Collision operators; all by default.
+        #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = operators())]
+        operator: Vec<String>,
+        /// Flows; all by default.
+        #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = flows())]
+        flow: Vec<String>,
+    },
+}
+
+/// Solvers whose limits are studied.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Solver {
+    /// Lattice Boltzmann method.
+    Lbm,
+}
+
+fn operators() -> PossibleValuesParser {
+    PossibleValuesParser::new(stability::OPERATORS.map(|(name, _)| name))
+}
+
+fn flows() -> PossibleValuesParser {
+    PossibleValuesParser::new(stability::FLOWS)
+}
+
+fn effort(full: bool) -> Effort {
+    if full { Effort::Full } else { Effort::Quick }
+}
+
 impl Validate {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
-        let effort = if self.full { Effort::Full } else { Effort::Quick };
+        if let Some(Study::Stability { solver: Solver::Lbm, full, operator, flow }) = self.study {
+            let request = stability::Request { effort: effort(full), operators: operator, flows: flow };
+            let rows = stability::lbm(&request)?;
+            show(common, &json!(rows), || stability::table(&rows));
+            return stability::verdict(&rows);
+        }
         let mut rows = Vec::new();
-        for case in validate::find(self.filter.as_deref())? {
+        for case in validate::find(self.cases.filter.as_deref())? {
             if !common.quiet {
                 eprintln!("{}: {}", case.name, case.about);
             }
-            rows.extend(case.run(effort));
+            rows.extend(case.run(effort(self.cases.full)));
         }
         show(common, &json!(rows), || validate::table(&rows));
         validate::verdict(&rows)

@@ -2,13 +2,13 @@
 
 pub(super) mod balance;
 pub(super) mod bodies;
-pub(super) mod cavity;
+pub(crate) mod cavity;
 pub(super) mod channel;
-pub(super) mod cylinder;
-pub(super) mod decay;
+pub(crate) mod cylinder;
+pub(crate) mod decay;
 
 use granular_core::Solver;
-use granular_lbm::{Lattice, Lbm, Operator, Setup};
+use granular_lbm::{Lattice, Lbm, Operator, Real, Setup};
 
 use crate::failure::Failure;
 
@@ -29,7 +29,10 @@ fn fluid<L: Lattice<Q>, const Q: usize>(setup: Setup<L::Dim>) -> Lbm<L, Q> {
     Lbm::new(setup).expect(FITS)
 }
 
-fn advance<L: Lattice<Q>, const Q: usize>(lbm: &mut Lbm<L, Q>, steps: u64) -> Result<(), Failure> {
+fn advance<L: Lattice<Q>, const Q: usize, T: Real>(
+    lbm: &mut Lbm<L, Q, T>,
+    steps: u64,
+) -> Result<(), Failure> {
     let dt = lbm.setup().time_step;
     Ok(lbm.advance(dt, steps)?)
 }

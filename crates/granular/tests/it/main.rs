@@ -10,6 +10,7 @@ mod command_flow;
 mod command_interrupt;
 mod command_snapshots;
 mod scenes;
+mod stability;
 mod support;
 mod validation;
 mod workspace;

@@ -3,10 +3,10 @@
 use super::super::Effort;
 use super::super::fit::order;
 use super::super::row::{Measure, Rows, Tier};
-use super::{OPERATORS, SOLVER, advance, fluid, on_both};
+use super::{FITS, OPERATORS, SOLVER, advance, on_both};
 use crate::failure::Failure;
 use granular_core::{Dim, Linear, Vector};
-use granular_lbm::{D2Q9, D3Q19, Flow, Lattice, Lbm, Operator, Setup};
+use granular_lbm::{D2Q9, D3Q19, Flow, Lattice, Lbm, Operator, Real, Setup};
 use std::f64::consts::TAU;
 
 /// Speed in cells per step at 32 cells; less in proportion on finer ones. So small that sound, whose phase at the end
@@ -16,9 +16,23 @@ const SPEED: f64 = 0.002;
 const DECAY: f64 = 3.0;
 
 /// Error of velocity and of viscosity.
-struct Decayed {
-    velocity: f64,
+pub(crate) struct Decayed {
+    /// Over the velocity that is left.
+    pub(crate) velocity: f64,
     viscosity: f64,
+}
+
+/// Vortices in a periodic square.
+pub(crate) struct Vortices {
+    pub(crate) operator: Operator,
+    /// Cells across.
+    pub(crate) side: usize,
+    /// Relaxation time in steps.
+    pub(crate) tau: f64,
+    /// Largest speed at the start, in cells per step.
+    pub(crate) speed: f64,
+    /// Decay times of velocity that are run.
+    pub(crate) decay: f64,
 }
 
 pub(crate) fn taylor_green(rows: &mut Rows, _: Effort) -> Result<(), Failure> {
@@ -46,31 +60,38 @@ pub(crate) fn taylor_green(rows: &mut Rows, _: Effort) -> Result<(), Failure> {
 }
 
 fn decay<L: Lattice<Q>, const Q: usize>(operator: Operator, side: usize) -> Result<Decayed, Failure> {
-    let tau = 0.8;
-    let depth = if L::Dim::N == 3 { 2 } else { 1 };
-    let mut setup = Setup::<L::Dim>::new([side, side, depth], 1.0, 1.0, tau);
-    setup.operator = operator;
-    let density = setup.density;
-    let dt = setup.time_step;
-    let speed = SPEED * 32.0 / side as f64 * setup.lattice_speed();
-    let k = TAU / side as f64;
-    let steps = (DECAY / (2.0 * k * k * dt)).round() as u64;
-    let time = steps as f64 * dt;
-    let exact = move |point: <L::Dim as Dim>::Vec, time: f64| {
-        let (x, y) = (k * point.component(0), k * point.component(1));
-        let fade = (-2.0 * k * k * time).exp();
-        let velocity = <L::Dim as Dim>::Vec::along(0, -speed * x.cos() * y.sin() * fade)
-            + Vector::along(1, speed * x.sin() * y.cos() * fade);
-        let pressure = -0.25 * density * (speed * fade).powi(2) * ((2.0 * x).cos() + (2.0 * y).cos());
-        Flow { pressure, velocity }
-    };
-    let mut lbm = fluid::<L, Q>(setup);
-    lbm.set_flow(|point| exact(point, 0.0));
-    let before = sums(&lbm, |point| exact(point, 0.0).velocity);
-    advance(&mut lbm, steps)?;
-    let after = sums(&lbm, |point| exact(point, time).velocity);
-    let viscosity = (before.energy / after.energy).ln() / (4.0 * k * k * time);
-    Ok(Decayed { velocity: (after.difference / after.exact).sqrt(), viscosity })
+    let speed = SPEED * 32.0 / side as f64;
+    Vortices { operator, side, tau: 0.8, speed, decay: DECAY }.run::<L, Q, f64>()
+}
+
+impl Vortices {
+    pub(crate) fn run<L: Lattice<Q>, const Q: usize, T: Real>(&self) -> Result<Decayed, Failure> {
+        let Self { operator, side, tau, speed, decay } = *self;
+        let depth = if L::Dim::N == 3 { 2 } else { 1 };
+        let mut setup = Setup::<L::Dim>::new([side, side, depth], 1.0, 1.0, tau);
+        setup.operator = operator;
+        let density = setup.density;
+        let dt = setup.time_step;
+        let speed = speed * setup.lattice_speed();
+        let k = TAU / side as f64;
+        let steps = (decay / (2.0 * k * k * dt)).round() as u64;
+        let time = steps as f64 * dt;
+        let exact = move |point: <L::Dim as Dim>::Vec, time: f64| {
+            let (x, y) = (k * point.component(0), k * point.component(1));
+            let fade = (-2.0 * k * k * time).exp();
+            let velocity = <L::Dim as Dim>::Vec::along(0, -speed * x.cos() * y.sin() * fade)
+                + Vector::along(1, speed * x.sin() * y.cos() * fade);
+            let pressure = -0.25 * density * (speed * fade).powi(2) * ((2.0 * x).cos() + (2.0 * y).cos());
+            Flow { pressure, velocity }
+        };
+        let mut lbm = Lbm::<L, Q, T>::new(setup).expect(FITS);
+        lbm.set_flow(|point| exact(point, 0.0));
+        let before = sums(&lbm, |point| exact(point, 0.0).velocity);
+        advance(&mut lbm, steps)?;
+        let after = sums(&lbm, |point| exact(point, time).velocity);
+        let viscosity = (before.energy / after.energy).ln() / (4.0 * k * k * time);
+        Ok(Decayed { velocity: (after.difference / after.exact).sqrt(), viscosity })
+    }
 }
 
 struct Sums {
@@ -79,8 +100,8 @@ struct Sums {
     exact: f64,
 }
 
-fn sums<L: Lattice<Q>, const Q: usize>(
-    lbm: &Lbm<L, Q>,
+fn sums<L: Lattice<Q>, const Q: usize, T: Real>(
+    lbm: &Lbm<L, Q, T>,
     exact: impl Fn(<L::Dim as Dim>::Vec) -> <L::Dim as Dim>::Vec,
 ) -> Sums {
     let side = lbm.setup().cells[0];
