@@ -55,6 +55,7 @@ mod open;
 mod pages;
 mod populations;
 mod real;
+mod relax;
 mod setup;
 mod shape;
 mod show;
