@@ -2,19 +2,19 @@
 //! that the processor has. All give the same bits: no operation is fused or reordered. (Fused products and
 //! sums were tried: 5 % faster with one relaxation time in the plane, 4 % slower in space.)
 //!
-//! A cell with a closure waits for two divisions and two roots, one after the other. In the plane a first
-//! loop over a strip that stays in the nearest cache computes what waits, so that many cells wait together,
-//! and a second one collides: a fifth faster. Without a closure, and in space, where numbers then leave the
-//! registers, the second read of populations costs more than waiting.
+//! A cell with a closure waits for two divisions and two roots, one after the other. Loops over a strip that
+//! stays in the nearest cache compute what waits, so that many cells wait together, and a last one collides:
+//! a fifth faster. Without a closure the second read of populations costs more than waiting.
 
 use crate::collision::{Parameters, Parts};
 use crate::lattice::{D2Q9, D3Q19};
 use crate::real::Real;
-use crate::relax::{State, collide, state};
+use crate::relax::{State, collide, rates, state};
 use multiversion::multiversion;
 
-/// Cells of the longest strip: 16 lines of single precision.
-const LONGEST_STRIP: usize = 256;
+/// Length of a strip in cache lines, and the most cells that are.
+const STRIP_LINES: usize = 32;
+const LONGEST_STRIP: usize = STRIP_LINES * 16;
 
 /// Collision of a row of cells.
 pub trait Rows<const Q: usize> {
@@ -33,29 +33,34 @@ macro_rules! rows {
         fn $function<T: Real, P: Parts>($($row: &mut [T],)+ parameters: &Parameters<T>) {
             let cells = [$($row.len()),+].into_iter().min().unwrap_or(0);
             $(let $row = &mut $row[..cells];)+
-            if !(P::CLOSURE && $q == 9) {
+            if !P::CLOSURE {
                 for x in 0..cells {
                     let f = [$($row[x]),+];
                     let state = state::<$lattice, T, P, $q>(&f, parameters);
-                    let after = collide::<$lattice, T, P, $q>(&f, state, parameters);
+                    let rates = rates::<T, P>(state, parameters);
+                    let after = collide::<$lattice, T, P, $q>(&f, state, rates, parameters);
                     $($row[x] = after[$against];)+
                 }
                 return;
             }
-            let mut states = [[T::default(); LONGEST_STRIP]; 4];
+            let mut numbers = [[T::default(); LONGEST_STRIP]; 4];
             let mut start = 0;
             while start < cells {
-                let end = (start + 16 * T::LINE).min(cells);
-                let [excess, inverse, even, odd] = states.each_mut().map(|values| &mut values[..end - start]);
+                let end = (start + STRIP_LINES * T::LINE).min(cells);
+                let [excess, inverse, even, odd] = numbers.each_mut().map(|values| &mut values[..end - start]);
                 $(let $row = &mut $row[start..end];)+
                 for x in 0..end - start {
                     let state = state::<$lattice, T, P, $q>(&[$($row[x]),+], parameters);
-                    (excess[x], inverse[x]) = (state.excess, state.inverse);
-                    [even[x], odd[x]] = state.rates;
+                    (excess[x], inverse[x], even[x]) = (state.excess, state.inverse, state.squared);
                 }
                 for x in 0..end - start {
-                    let state = State { excess: excess[x], inverse: inverse[x], rates: [even[x], odd[x]] };
-                    let after = collide::<$lattice, T, P, $q>(&[$($row[x]),+], state, parameters);
+                    let state = State { excess: excess[x], inverse: inverse[x], squared: even[x] };
+                    [even[x], odd[x]] = rates::<T, P>(state, parameters);
+                }
+                for x in 0..end - start {
+                    let state = State { excess: excess[x], inverse: inverse[x], squared: T::of(0.0) };
+                    let f = [$($row[x]),+];
+                    let after = collide::<$lattice, T, P, $q>(&f, state, [even[x], odd[x]], parameters);
                     $($row[x] = after[$against];)+
                 }
                 start = end;

@@ -8,14 +8,9 @@ use crate::lattice::Lattice;
 use crate::real::Real;
 use granular_core::Dim;
 
-/// Relaxation time with the closure of Smagorinsky, in closed form: the eddy viscosity is
-/// `(C h)^2 |S|` with `|S| = sqrt(2 S:S)`, and `S` follows from the stress itself \[Hou1996\].
+/// Squared norm of a stress.
 #[inline(always)]
-fn closed_tau<L: Lattice<Q>, T: Real, const Q: usize>(
-    p: &Parameters<T>,
-    stress: [T; 6],
-    inverse_density: T,
-) -> T {
+fn squared<L: Lattice<Q>, T: Real, const Q: usize>(stress: [T; 6]) -> T {
     // Off the diagonal, each component stands for two.
     let axes = L::Dim::N;
     let mut mixed = stress[3] * stress[3];
@@ -26,8 +21,18 @@ fn closed_tau<L: Lattice<Q>, T: Real, const Q: usize>(
     for i in 0..axes {
         squared += stress[i] * stress[i];
     }
-    let strained = p.closure * inverse_density * squared.sqrt() + p.tau * p.tau;
-    T::of(0.5) * (p.tau + strained.sqrt())
+    squared
+}
+
+/// Rates of stress and of odd moments in a cell. With the closure of Smagorinsky in closed form: the eddy viscosity is
+/// `(C h)^2 |S|` with `|S| = sqrt(2 S:S)`, and `S` follows from the stress itself \[Hou1996\].
+#[inline(always)]
+pub(crate) fn rates<T: Real, P: Parts>(state: State<T>, p: &Parameters<T>) -> [T; 2] {
+    if !P::CLOSURE {
+        return [p.even, p.odd];
+    }
+    let strained = p.closure * state.inverse * state.squared.sqrt() + p.tau * p.tau;
+    rates_at(p, T::of(0.5) * (p.tau + strained.sqrt()))
 }
 
 /// Rates of stress and of odd moments at a relaxation time, with one division.
@@ -48,8 +53,8 @@ pub(crate) struct State<T> {
     pub(crate) excess: T,
     /// One over the density.
     pub(crate) inverse: T,
-    /// Rates of stress and of odd moments, with a closure only.
-    pub(crate) rates: [T; 2],
+    /// Squared norm of the stress, with a closure only.
+    pub(crate) squared: T,
 }
 
 /// Sums over pairs of opposite directions, and at rest.
@@ -124,17 +129,16 @@ pub(crate) fn state<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
     }
     let excess = sums[0] + sums[1];
     let inverse = T::of(1.0) / (T::of(1.0) + excess);
-    let rates = if P::CLOSURE {
+    let mut state = State { excess, inverse, squared: T::of(0.0) };
+    if P::CLOSURE {
         let motion = Motion::of::<L, P, Q>(&odd_of(f), p, inverse);
         let mut stress = less(L::second_moment(&even), motion.flux::<P>());
         for normal in stress.iter_mut().take(L::Dim::N) {
             *normal = *normal - T::of(1.0 / 3.0) * excess;
         }
-        rates_at(p, closed_tau::<L, T, Q>(p, stress, inverse))
-    } else {
-        [p.even, p.odd]
-    };
-    State { excess, inverse, rates }
+        state.squared = squared::<L, T, Q>(stress);
+    }
+    state
 }
 
 /// Populations after collision.
@@ -142,12 +146,12 @@ pub(crate) fn state<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
 pub(crate) fn collide<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
     f: &[T; Q],
     state: State<T>,
+    [even_rate, odd_rate]: [T; 2],
     p: &Parameters<T>,
 ) -> [T; Q] {
     let half = T::of(0.5);
     let (even, odd) = (even_of(f), odd_of(f));
     let motion = Motion::of::<L, P, Q>(&odd, p, state.inverse);
-    let [even_rate, odd_rate] = if P::CLOSURE { state.rates } else { [p.even, p.odd] };
     let mut relaxed = if P::GHOSTS {
         relaxed_moments::<L, T, P, Q>(&even, &motion, state.excess, even_rate, p)
     } else {
