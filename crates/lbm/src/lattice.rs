@@ -37,8 +37,11 @@ pub trait Lattice<const Q: usize>: sealed::Sealed + Rows<Q> + Copy + Send + Sync
     fn second_moment<T: Real>(even: &[T; Q]) -> [T; 6];
     /// Ghost moments of a number per pair and at rest; those that do not exist are zero.
     fn ghost_moments<T: Real>(even: &[T; Q]) -> [T; 4];
-    /// Sum of the ghosts times a number each, at rest and in the first direction of each pair.
-    fn ghost_parts<T: Real>(moments: [T; 4]) -> [T; Q];
+    /// Ghost moments in equilibrium, from the density less that at rest and the flux of momentum (xx, yy, zz).
+    fn ghosts_in_equilibrium<T: Real>(excess: T, flux: [T; 6]) -> [T; 4];
+    /// At rest and in the first direction of each pair: the sum of the ghosts times a number each, and what
+    /// carries the deviator of a stress (xx, yy, zz, xy, xz, yz).
+    fn even_parts<T: Real>(ghosts: [T; 4], stress: [T; 6]) -> [T; Q];
 }
 
 /// The direction against direction `i`.
@@ -98,11 +101,18 @@ impl Lattice<9> for D2Q9 {
     }
 
     #[inline(always)]
-    fn ghost_parts<T: Real>([energy, square, ..]: [T; 4]) -> [T; 9] {
-        let two = T::of(2.0);
+    fn ghosts_in_equilibrium<T: Real>(excess: T, [xx, yy, ..]: [T; 6]) -> [T; 4] {
+        let moving = T::of(3.0) * (xx + yy) - excess;
+        [moving - excess, -moving, T::of(0.0), T::of(0.0)]
+    }
+
+    #[inline(always)]
+    fn even_parts<T: Real>([energy, square, ..]: [T; 4], [xx, yy, _, xy, ..]: [T; 6]) -> [T; 9] {
+        let (two, quarter, o) = (T::of(2.0), T::of(0.25), T::of(0.0));
         let (axis, diagonal) = (-energy - two * square, two * energy + square);
         let rest = T::of(4.0) * (square - energy);
-        [rest, axis, axis, axis, axis, diagonal, diagonal, diagonal, diagonal]
+        let (across, mixed) = (quarter * (xx - yy), quarter * xy);
+        [rest, axis + across, o, axis - across, o, diagonal + mixed, o, diagonal - mixed, o]
     }
 }
 
@@ -174,14 +184,53 @@ impl Lattice<19> for D3Q19 {
     }
 
     #[inline(always)]
-    fn ghost_parts<T: Real>([energy, square, along, across]: [T; 4]) -> [T; 19] {
-        let (two, four) = (T::of(2.0), T::of(4.0));
+    fn ghosts_in_equilibrium<T: Real>(excess: T, [xx, yy, zz, ..]: [T; 6]) -> [T; 4] {
+        let half = T::of(0.5);
+        let (across, difference) = (yy + zz, yy - zz);
+        let trace = xx + across;
+        [
+            T::of(19.0) * trace - T::of(11.0) * excess,
+            T::of(3.0) * excess - T::of(5.5) * trace,
+            half * across - xx,
+            -(half * difference),
+        ]
+    }
+
+    #[inline(always)]
+    fn even_parts<T: Real>([energy, square, along, across]: [T; 4], stress: [T; 6]) -> [T; 19] {
+        let (two, four, quarter, o) = (T::of(2.0), T::of(4.0), T::of(0.25), T::of(0.0));
+        let [xx, yy, zz, ..] = stress;
+        let [.., xy, xz, yz] = stress.map(|component| quarter * component);
+        // On the axes, and on the diagonals, the parts along x and across it.
+        let (x, w) = (T::of(1.0 / 36.0) * (two * xx - yy - zz), T::of(1.0 / 12.0) * (yy - zz));
         let rest = T::of(12.0) * square - T::of(30.0) * energy;
         let axis = -(T::of(11.0) * energy + four * square);
         let diagonal = T::of(8.0) * energy + square;
-        let (x, y, z) = (axis - four * along, axis + two * (along - across), axis + two * (along + across));
-        let (xy, xz, yz) = (diagonal + (along + across), diagonal + (along - across), diagonal - two * along);
-        [rest, x, x, y, y, z, z, xy, xy, xy, xy, xz, xz, xz, xz, yz, yz, yz, yz]
+        let (on_x, on_w) = (x - two * along, w - two * across);
+        let (off_x, off_w) = (x + along, w + across);
+        let (pxy, pxz, pyz) =
+            (diagonal + (off_x + off_w), diagonal + (off_x - off_w), diagonal - two * off_x);
+        [
+            rest,
+            axis + two * on_x,
+            o,
+            axis - (on_x - on_w),
+            o,
+            axis - (on_x + on_w),
+            o,
+            pxy + xy,
+            o,
+            pxy - xy,
+            o,
+            pxz + xz,
+            o,
+            pxz - xz,
+            o,
+            pyz + yz,
+            o,
+            pyz - yz,
+            o,
+        ]
     }
 }
 
@@ -220,9 +269,46 @@ mod tests {
             assert_eq!(moments[k], ghost[0] * values[0] + pairs, "{} {k}", L::NAME);
             let unit = std::array::from_fn(|other| f64::from(u8::from(other == k)));
             if k < L::GHOSTS.len() {
-                assert_eq!(L::ghost_parts::<f64>(unit), ghost, "{} {k}", L::NAME);
+                let parts = L::even_parts(unit, [0.0; 6]);
+                assert!((0..Q).filter(|i| *i == 0 || i % 2 == 1).all(|i| parts[i] == ghost[i]), "{parts:?}");
             }
         }
+    }
+
+    /// Sums of pairs from a number per direction.
+    fn pairs<const Q: usize>(f: [f64; Q]) -> [f64; Q] {
+        std::array::from_fn(|i| if i % 2 == 1 { f[i] + f[i + 1] } else { f[i] })
+    }
+
+    fn equilibrium<L: Lattice<Q>, const Q: usize>() {
+        let velocity = [0.02, -0.05, if L::Dim::N == 3 { 0.03 } else { 0.0 }];
+        let even = pairs(crate::open::equilibrium::<L, Q>(0.25, velocity));
+        let [x, y, z] = velocity.map(|c| 1.25 * c * c);
+        let expected = L::ghosts_in_equilibrium(0.25, [x, y, z, 0.0, 0.0, 0.0]);
+        for (found, expected) in L::ghost_moments(&even).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-14, "{} {found} {expected}", L::NAME);
+        }
+    }
+
+    fn deviator<L: Lattice<Q>, const Q: usize>() {
+        let stress =
+            if L::Dim::N == 3 { [0.3, -0.2, 0.7, 0.4, -0.5, 0.6] } else { [0.3, -0.2, 0.0, 0.4, 0.0, 0.0] };
+        let parts = L::even_parts([0.0; 4], stress);
+        let even = std::array::from_fn(|i| if i % 2 == 1 { 2.0 * parts[i] } else { parts[i] });
+        let trace = stress[..3].iter().sum::<f64>() / L::Dim::N as f64;
+        for (i, found) in L::second_moment(&even).into_iter().enumerate() {
+            let expected = if i < L::Dim::N { stress[i] - trace } else { stress[i] };
+            assert!((found - expected).abs() < 1e-14, "{} {i} {found} {expected}", L::NAME);
+        }
+        assert!(L::ghost_moments(&even).into_iter().all(|moment| moment.abs() < 1e-14), "{}", L::NAME);
+    }
+
+    #[test]
+    fn moments_in_equilibrium_and_parts_of_the_stress_are_those_of_the_populations() {
+        equilibrium::<D2Q9, 9>();
+        equilibrium::<D3Q19, 19>();
+        deviator::<D2Q9, 9>();
+        deviator::<D3Q19, 19>();
     }
 
     #[test]

@@ -68,6 +68,7 @@ mod pages;
 mod populations;
 mod probes;
 mod real;
+mod relax;
 mod setup;
 mod shape;
 mod show;
