@@ -84,9 +84,11 @@ pub(super) fn spectrum_chart(
     let label = if reference.is_some() { "Strouhal number f L / U [-]" } else { "frequency [1/s]" };
     let name = column.replace('_', " ");
     let highest = found.points.iter().map(|point| point[1]).fold(0.0, f64::max);
-    // Beyond the last frequency with a thousandth of the peak there is nothing to see.
+    // Beyond the last frequency with a thousandth of the peak, and beyond ten times it, there is little to see.
     let last = found.points.iter().rposition(|point| point[1] > 1e-3 * highest).unwrap_or(0);
-    let shown = &found.points[1..(2 * last + 2).clamp(2, found.points.len())];
+    let tenfold = found.peak.and_then(|peak| found.points.iter().position(|point| point[0] > 10.0 * peak));
+    let end = (2 * last + 2).min(tenfold.unwrap_or(usize::MAX)).clamp(2, found.points.len());
+    let shown = &found.points[1..end];
     let thinned = shown.iter().step_by(shown.len().div_ceil(DRAWN)).map(|[f, a]| [f * factor, *a]);
     let axes = (Axis::linear(label), Axis::log(format!("amplitude of the {name} [{unit}]")));
     let heading = title(scene, &format!("spectrum of the {name}"));
