@@ -7,6 +7,7 @@ mod channel;
 mod contract;
 mod lattices;
 mod limits;
+mod pairs;
 mod symmetry;
 
 #[global_allocator]
