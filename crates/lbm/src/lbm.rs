@@ -5,8 +5,9 @@ use crate::collision::{Parameters, Parts, Physics, With};
 use crate::lattice::Lattice;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of, cover};
 use crate::open::{dot, equilibrium, moments};
-use crate::populations::{Grid, Populations, Runs};
+use crate::populations::{Grid, Layout, Populations, Runs};
 use crate::real::Real;
+use crate::rows::RowLinks;
 use crate::setup::{Setup, SetupError};
 use granular_core::solver::check_step;
 use granular_core::{Dim, Motion, StepError, Vector};
@@ -15,7 +16,14 @@ use granular_core::{Dim, Motion, StepError, Vector};
 /// be twice that at rest.
 const BEYOND: f64 = 4.0 / 9.0;
 
+/// Fewest steps at once for which links are sorted for two steps together.
+const PAIRED: u64 = 4;
+
 type StepFunction<T> = fn(&mut Populations<T>, &Runs, &Parameters<T>, T) -> bool;
+type PairFunction<T> = fn(&mut Populations<T>, &Runs, &RowLinks<T>, &Parameters<T>, T) -> bool;
+
+/// One step, and two in one pass.
+type Steps<T> = (StepFunction<T>, PairFunction<T>);
 
 /// A fluid on a lattice. `T` is the type in which populations are stored and computed.
 pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
@@ -27,9 +35,10 @@ pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
     pub(crate) motions: Vec<Motion<L::Dim>>,
     pub(crate) may_have_moved: bool,
     pub(crate) beyond: Beyond<T>,
+    pub(crate) row_links: RowLinks<T>,
     pub(crate) physics: Physics,
     parameters: Parameters<T>,
-    step: StepFunction<T>,
+    step: Steps<T>,
     pub(crate) steps: u64,
     pub(crate) fluid_cells: usize,
 }
@@ -84,12 +93,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             motions: setup.obstacles.iter().map(|obstacle| obstacle.motion()).collect(),
             may_have_moved: false,
             beyond,
+            row_links: RowLinks::default(),
             parameters: physics.parameters::<L, T, Q>(),
             step: step_function::<L, T, Q>(&physics),
             physics,
             steps: 0,
             setup,
         };
+        if lbm.is_pairable() {
+            lbm.sort_links();
+        }
         lbm.set_flow(|_| Flow { pressure: 0.0, velocity: Vector::along(0, 0.0) });
         Ok(lbm)
     }
@@ -156,15 +169,37 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             return Err(StepError::Step { dt, why });
         }
         self.meet_moved_obstacles()?;
-        for _ in 0..steps {
-            let is_beyond = (self.step)(&mut self.populations, &self.runs, &self.parameters, T::of(BEYOND));
+        let is_paired = steps >= PAIRED && self.is_pairable();
+        if is_paired {
+            self.sort_links();
+        }
+        let (one, two) = self.step;
+        let mut left = steps;
+        while left > 0 {
+            let (populations, bound) = (&mut self.populations, T::of(BEYOND));
+            let (taken, is_beyond) = if is_paired && left > 1 && populations.layout == Layout::Natural {
+                (2, two(populations, &self.runs, &self.row_links, &self.parameters, bound))
+            } else {
+                (1, one(populations, &self.runs, &self.parameters, bound))
+            };
             self.apply_boundaries();
-            self.steps += 1;
+            self.steps += taken;
+            left -= taken;
             if is_beyond {
                 return Err(self.culprit());
             }
         }
         Ok(())
+    }
+
+    /// Whether two steps may share a pass over memory: open faces act on all cells between.
+    fn is_pairable(&self) -> bool {
+        L::Dim::N == 2 && self.beyond.open.is_empty()
+    }
+
+    /// Links as they are now, for steps in pairs.
+    fn sort_links(&mut self) {
+        self.row_links.fill(&self.populations.grid, &self.beyond.copies, &self.beyond.obstacles);
     }
 
     /// Names the first cell whose state makes no sense.
@@ -266,9 +301,9 @@ fn started<L: Lattice<Q>, const Q: usize>(
 }
 
 /// The step compiled for the parts that are on.
-fn step_function<L: Lattice<Q>, T: Real, const Q: usize>(physics: &Physics) -> StepFunction<T> {
-    fn of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>() -> StepFunction<T> {
-        Populations::step::<L, P, Q>
+fn step_function<L: Lattice<Q>, T: Real, const Q: usize>(physics: &Physics) -> Steps<T> {
+    fn of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>() -> Steps<T> {
+        (Populations::step::<L, P, Q>, Populations::two_steps::<L, P, Q>)
     }
     match (physics.has_ghosts(), physics.has_force(), physics.has_closure()) {
         (false, false, false) => of::<L, T, With<false, false, false>, Q>(),

@@ -15,7 +15,7 @@ pub(crate) struct Port {
 }
 
 /// Index of a population in both layouts.
-type Both = [u32; 2];
+pub(crate) type Both = [u32; 2];
 
 fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
     [Layout::Natural, Layout::Turned]
@@ -30,9 +30,9 @@ fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
 /// Links that copy: walls half-way between cells, free slip, periodic faces.
 #[derive(Clone, Debug)]
 pub(crate) struct Copies<T> {
-    resting: Vec<(Both, Both)>,
+    pub(crate) resting: Vec<(Both, Both)>,
     /// With what a moving wall adds.
-    moving: Vec<(Both, Both, T)>,
+    pub(crate) moving: Vec<(Both, Both, T)>,
 }
 
 impl<T: Real> Copies<T> {
@@ -128,21 +128,27 @@ pub(crate) struct Cut {
 /// All links of one obstacle.
 #[derive(Clone, Debug)]
 pub(crate) struct Cuts<T> {
-    links: Vec<CutLink<T>>,
+    pub(crate) links: Vec<CutLink<T>>,
     /// Force and torque of the fluid on the obstacle in the last step, in lattice units.
     pub(crate) force: [f64; 3],
     pub(crate) torque: [f64; 3],
 }
 
 #[derive(Clone, Debug)]
-struct CutLink<T> {
-    to: Both,
-    from: [Both; 3],
-    weights: [T; 3],
-    added: T,
+pub(crate) struct CutLink<T> {
+    pub(crate) to: Both,
+    pub(crate) from: [Both; 3],
+    pub(crate) weights: [T; 3],
+    pub(crate) added: T,
     direction: u8,
     arm: [f64; 3],
     velocity: [f64; 3],
+}
+
+/// What enters from a wall, from what left the cell towards it, the cell behind towards it, and the cell away from it.
+#[inline]
+pub(crate) fn entering_cut<T: Real>([near, behind, away]: [T; 3], [a, b, c]: [T; 3], added: T) -> T {
+    a * near + b * behind + c * away + added
 }
 
 impl<T: Real> Cuts<T> {
@@ -182,9 +188,8 @@ impl<T: Real> Cuts<T> {
         let values = &mut populations.values[..];
         let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
         for link in &self.links {
-            let [near, behind, away] = link.from.map(|from| values[from[at] as usize]);
-            let [a, b, c] = link.weights;
-            let entering = a * near + b * behind + c * away + link.added;
+            let left = link.from.map(|from| values[from[at] as usize]);
+            let (near, entering) = (left[0], entering_cut(left, link.weights, link.added));
             values[link.to[at] as usize] = entering;
             let (out, back) = (near.double(), entering.double());
             let velocity = L::VELOCITIES[link.direction as usize].map(f64::from);

@@ -13,7 +13,9 @@
 use crate::collision::{Parameters, Parts};
 use crate::lattice::{Lattice, opposite};
 use crate::pages::Pages;
+use crate::pair::slab_rows;
 use crate::real::Real;
+use crate::rows::Spot;
 use granular_core::blocks::{Blocks, Divide, PerBlock};
 
 /// Where populations lie between steps.
@@ -95,6 +97,31 @@ impl Grid {
         self.strides[axis]
     }
 
+    /// Plane and place in it of an index.
+    pub(crate) fn spot(&self, index: usize) -> Spot {
+        Spot { plane: (index / self.plane) as u8, place: (index % self.plane) as u32 }
+    }
+
+    /// Place of the first cell of a row in the plane.
+    pub(crate) fn row_place(&self, row: usize) -> usize {
+        self.origin + row * self.pitch
+    }
+
+    /// Place where a row in the plane begins, padding included.
+    pub(crate) fn row_start(&self, row: usize) -> usize {
+        (row + 1) * self.pitch
+    }
+
+    /// Row in the plane of the cell whose population a natural index names.
+    pub(crate) fn row_at(&self, natural: u32) -> usize {
+        natural as usize % self.plane / self.pitch - 1
+    }
+
+    /// All planes.
+    pub(crate) fn planes<'a, T, const Q: usize>(&self, values: &'a mut [T]) -> [&'a mut [T]; Q] {
+        values.chunks_exact_mut(self.plane).collect_array()
+    }
+
     /// Index of the row of a cell among the rows from the first of the domain on.
     fn row_of(&self, y: usize, z: usize) -> usize {
         z * (self.cells[1] + 2) + y
@@ -163,11 +190,11 @@ impl Runs {
         }
     }
 
-    fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.starts.len() - 1
     }
 
-    fn of_row(&self, row: usize) -> &[[u32; 2]] {
+    pub(crate) fn of_row(&self, row: usize) -> &[[u32; 2]] {
         &self.runs[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
 
@@ -177,14 +204,16 @@ impl Runs {
 }
 
 /// Parts of the planes, one per direction, from which a slab of rows reads and to which it writes. Slabs never share any.
-struct Slab<'a, T, const Q: usize> {
-    planes: [&'a mut [T]; Q],
-    pitch: usize,
+pub(crate) struct Slab<'a, T, const Q: usize> {
+    pub(crate) planes: [&'a mut [T]; Q],
+    pub(crate) pitch: usize,
+    /// Rows that the planes have before the first row of the first block.
+    pub(crate) lead: isize,
 }
 
 impl<T: Send, const Q: usize> Divide for Slab<'_, T, Q> {
     fn divide(self, blocks: usize, size: usize) -> (Self, Self) {
-        let at = blocks * size * self.pitch;
+        let at = (blocks * size).saturating_add_signed(self.lead) * self.pitch;
         let mut rest: [Option<&mut [T]>; Q] = std::array::from_fn(|_| None);
         let mut rests = rest.iter_mut();
         let first = self.planes.map(|plane| {
@@ -193,7 +222,7 @@ impl<T: Send, const Q: usize> Divide for Slab<'_, T, Q> {
             first
         });
         let second = rest.map(|plane| plane.expect("one per direction"));
-        (Self { planes: first, pitch: self.pitch }, Self { planes: second, pitch: self.pitch })
+        (Self { planes: first, ..self }, Self { planes: second, pitch: self.pitch, lead: 0 })
     }
 }
 
@@ -205,8 +234,10 @@ pub(crate) struct Populations<T> {
     pub(crate) values: Pages<T>,
     /// Rows of a slab.
     slab: usize,
+    /// Rows of a slab that takes two steps together.
+    pub(crate) pair: usize,
     /// Per slab: a population at rest beyond what the scheme can mean.
-    beyond: Vec<bool>,
+    pub(crate) beyond: Vec<bool>,
 }
 
 impl<T: Real> Populations<T> {
@@ -214,8 +245,11 @@ impl<T: Real> Populations<T> {
         let values = Pages::zeroed(grid.len::<Q>());
         // About 64 slabs, so that threads find work, of 16 rows at least.
         let blocks = Blocks::about(runs.rows(), 64, 16);
-        let beyond = vec![false; blocks.count()];
-        Self { grid, layout: Layout::Natural, values, slab: blocks.size(), beyond }
+        // Rows that take the second of two steps later may need one block more.
+        let beyond = vec![false; blocks.count() + 1];
+        // Longer ones for two steps together: their ends are read twice.
+        let pair = slab_rows(runs.rows(), Blocks::about(runs.rows(), 16, 64).size());
+        Self { grid, layout: Layout::Natural, values, slab: blocks.size(), pair, beyond }
     }
 
     /// Collides and moves all fluid cells. Returns whether any population at rest is not finite or larger than `bound`.
@@ -236,21 +270,14 @@ impl<T: Real> Populations<T> {
             let values = by_plane[start / plane].take().expect("each direction has a plane of its own");
             &mut values[start % plane..start % plane + length]
         });
-        let work = (Slab { planes, pitch }, PerBlock(&mut self.beyond));
+        let work = (Slab { planes, pitch, lead: 0 }, PerBlock(&mut self.beyond));
         Blocks::new(runs.rows(), self.slab).for_each(work, |block, (mut slab, beyond)| {
             let mut worst = false;
             let first = block * self.slab;
             for row in first..(first + self.slab).min(runs.rows()) {
-                for &[a, b] in runs.of_row(row) {
-                    let at = (row - first) * pitch;
-                    let mut planes = slab.planes.iter_mut();
-                    let mut rows: [&mut [T]; Q] = std::array::from_fn(|_| {
-                        let plane = planes.next().expect("one per direction");
-                        &mut plane[at + a as usize..at + b as usize]
-                    });
-                    L::collide_row::<T, P>(rows.each_mut().map(|row| &mut **row), parameters);
-                    worst |= is_beyond(rows[0], bound);
-                }
+                let starts = [(row - first) * pitch; Q];
+                let runs = runs.of_row(row);
+                worst |= collide_runs::<L, T, P, Q>(&mut slab.planes, starts, runs, parameters, bound);
             }
             beyond.0[0] = worst;
         });
@@ -258,7 +285,7 @@ impl<T: Real> Populations<T> {
             Layout::Natural => Layout::Turned,
             Layout::Turned => Layout::Natural,
         };
-        self.beyond.iter().any(|beyond| *beyond)
+        self.beyond[..Blocks::new(runs.rows(), self.slab).count()].contains(&true)
     }
 
     /// Populations that enter a cell in the next step.
@@ -274,6 +301,29 @@ impl<T: Real> Populations<T> {
             self.values[at] = value;
         }
     }
+}
+
+/// Collides the runs of a row that begins at `starts` in the planes of the directions. Returns whether a population at
+/// rest is not finite or larger than `bound`.
+#[inline]
+pub(crate) fn collide_runs<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
+    planes: &mut [&mut [T]; Q],
+    starts: [usize; Q],
+    runs: &[[u32; 2]],
+    parameters: &Parameters<T>,
+    bound: T,
+) -> bool {
+    let mut worst = false;
+    for &[a, b] in runs {
+        let mut planes = planes.iter_mut().zip(starts);
+        let mut rows: [&mut [T]; Q] = std::array::from_fn(|_| {
+            let (plane, start) = planes.next().expect("one per direction");
+            &mut plane[start + a as usize..start + b as usize]
+        });
+        L::collide_row::<T, P>(rows.each_mut().map(|row| &mut **row), parameters);
+        worst |= is_beyond(rows[0], bound);
+    }
+    worst
 }
 
 /// Whether any value is not finite or larger than `bound`.

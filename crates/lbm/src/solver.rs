@@ -150,6 +150,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     fn memory_in_use(&self) -> Memory {
         let populations = self.populations.values.len() * size_of::<T>();
         let links = self.beyond.copies.bytes()
+            + self.row_links.bytes()
             + self.beyond.obstacles.iter().map(|cuts| cuts.bytes()).sum::<usize>()
             + self.beyond.open.bytes();
         let bytes = populations + links + self.runs.bytes() + 2 * self.cover.capacity();

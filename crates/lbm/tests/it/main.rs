@@ -9,6 +9,7 @@ mod contract;
 mod lattices;
 mod limits;
 mod open;
+mod pairs;
 mod probes;
 mod shapes;
 mod symmetry;
