@@ -27,7 +27,7 @@
 //! let disk = simulation.add("disk", disk)?;
 //! simulation.couple(water, disk, CarriedObstacles::all())?;
 //! simulation.begin_segment(dt)?;
-//! simulation.advance(20)?;
+//! simulation.advance(5)?;
 //! assert!(simulation.get(water).force_on(0).x < 0.0); // the water resists
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

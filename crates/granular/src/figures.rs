@@ -4,7 +4,7 @@ mod column;
 mod flow;
 mod fluid;
 mod map;
-mod spectrum;
+pub(crate) mod spectrum;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;

@@ -18,6 +18,9 @@ pub mod validate;
 
 /// Scenes to start from: name and text. The first line of each is a comment that says what it is.
 pub const TEMPLATES: &[(&str, &str)] = &[
+    ("cavity", include_str!("../templates/cavity.ron")),
+    ("channel-flow", include_str!("../templates/channel-flow.ron")),
     ("column-collapse", include_str!("../templates/column-collapse.ron")),
+    ("cylinder", include_str!("../templates/cylinder.ron")),
     ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
 ];

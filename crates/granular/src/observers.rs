@@ -1,5 +1,7 @@
 //! Observers of a run: tables, files of fields, rest, and the timer of snapshots.
 
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod profile;
 
 pub(crate) use profile::Line;
@@ -42,7 +44,7 @@ pub(crate) fn of_output(
             Box::new(profile::ProfileObserver::new(path, line, fields, simulation, fresh)?)
         }
         #[cfg(feature = "hdf5")]
-        Writer::Hdf5 { fields, .. } => Box::new(hdf5::Hdf5Observer::new(&path, fields, fresh)?),
+        Writer::Hdf5 { fields, .. } => Box::new(hdf5::Hdf5Observer::new(&path, fields, simulation, fresh)?),
         #[cfg(not(feature = "hdf5"))]
         Writer::Hdf5 { path, .. } => {
             let reason = "this program was built without the cargo feature `hdf5`; use Fields instead";
@@ -281,47 +283,4 @@ pub(crate) fn number_of(simulation: &Simulation, name: &str) -> Option<f64> {
     let mut numbers = Numbers::wanting([name]);
     simulation.solver().show(&mut numbers);
     numbers.get(name)
-}
-
-/// One temporal `.vtkhdf` file.
-#[cfg(feature = "hdf5")]
-mod hdf5 {
-    use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
-    use granular_io::{Frame, VtkHdfPoints};
-    use std::path::{Path, PathBuf};
-
-    pub(super) struct Hdf5Observer {
-        path: PathBuf,
-        fields: Vec<String>,
-        file: Option<VtkHdfPoints>,
-    }
-
-    impl Hdf5Observer {
-        pub(super) fn new(stem: &Path, fields: &[String], fresh: bool) -> Result<Self, Failure> {
-            let path = stem.with_extension("vtkhdf");
-            let file = if fresh { Some(VtkHdfPoints::create(&path)?) } else { None };
-            Ok(Self { path, fields: fields.to_vec(), file })
-        }
-    }
-
-    impl Observer for Hdf5Observer {
-        fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-            let mut frame = Frame::wanting(self.fields.iter().map(String::as_str));
-            simulation.solver().show(&mut frame);
-            if let Some(file) = &mut self.file {
-                file.append(&simulation.solver().location(), &frame, simulation.clock().time())?;
-            }
-            Ok(Flow::Continue)
-        }
-
-        fn save(&self, to: &mut Section) {
-            to.put_one("steps", self.file.as_ref().map_or(0, VtkHdfPoints::steps) as u64);
-        }
-
-        fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-            let steps: u64 = from.one("steps")?;
-            self.file = Some(VtkHdfPoints::reopen_at(&self.path, steps as usize)?);
-            Ok(())
-        }
-    }
 }

@@ -6,6 +6,7 @@ pub(crate) mod cavity;
 pub(super) mod channel;
 pub(crate) mod cylinder;
 pub(crate) mod decay;
+pub(super) mod street;
 
 use granular_core::Solver;
 use granular_lbm::{Lattice, Lbm, Operator, Real, Setup};

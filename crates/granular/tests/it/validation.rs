@@ -21,6 +21,7 @@ mod restitution;
 mod sliding_to_rolling;
 mod square_array;
 mod taylor_green;
+mod vortex_street;
 mod womersley;
 
 use granular::validate::{CASES, Effort, find, table};
