@@ -34,7 +34,7 @@ const BORNE: [[Borne; 6]; 5] = [
     // Two.
     [[25.0, ANY], [60.0, ANY], [11.0, ANY], [13.0, ANY], [11.0, ANY], [19.0, ANY]],
     // Multiple, odd rate by `Lambda`.
-    [[9.0, ANY], [150.0, ANY], [9.0, ANY], [150.0, ANY], [9.0, ANY], [10.0, ANY]],
+    [[9.0, ANY], [80.0, ANY], [9.0, ANY], [80.0, ANY], [9.0, ANY], [10.0, ANY]],
     // Multiple, odd rate given.
     [[50.0, ANY], [1000.0, ANY], [50.0, 50.0], [1000.0, 3000.0], [50.0, 140.0], [1000.0, ANY]],
     // Regularised.
