@@ -87,6 +87,7 @@ pub const CASES: &[Case] = &[
     },
     Case { name: "cavity", about: "a cavity under a moving lid", run: fluid::cavity::run },
     Case { name: "cylinder", about: "drag and lift of a cylinder in a channel", run: fluid::cylinder::run },
+    Case { name: "wall_in_channel", about: "the stream turns back behind a wall", run: fluid::wall::run },
     Case { name: "vortex_street", about: "Strouhal numbers of a disk and a square", run: fluid::street::run },
     Case { name: "square_array", about: "drag of a square array of disks", run: fluid::bodies::square_array },
     Case {

@@ -7,6 +7,7 @@ pub(super) mod channel;
 pub(crate) mod cylinder;
 pub(crate) mod decay;
 pub(super) mod street;
+pub(super) mod wall;
 
 use granular_core::Solver;
 use granular_lbm::{Lattice, Lbm, Operator, Real, Setup};

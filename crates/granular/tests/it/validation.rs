@@ -22,6 +22,7 @@ mod sliding_to_rolling;
 mod square_array;
 mod taylor_green;
 mod vortex_street;
+mod wall_in_channel;
 mod womersley;
 
 use granular::validate::{CASES, Effort, find, table};
