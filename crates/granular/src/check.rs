@@ -200,7 +200,11 @@ impl fmt::Display for Report {
         }
         writeln!(f, "\nbounds")?;
         for bound in &self.limits.bounds {
-            let verdict = if bound.holds() { "holds" } else { "BROKEN" };
+            let verdict = match (bound.holds(), bound.refuses) {
+                (true, _) => "holds",
+                (false, true) => "BROKEN, refuses the run",
+                (false, false) => "EXCEEDED, a warning",
+            };
             writeln!(
                 f,
                 "  {:<32} {:>8.3} of {} {}  {verdict}  ({})",
