@@ -57,8 +57,8 @@ impl<D: Dim> Obstacle<D> {
     }
 
     /// Takes a motion, whose place may lie periods away.
-    pub(crate) fn set_motion(&mut self, motion: Motion<D>, setup: &Domain<D>) {
-        self.displacement = setup.wrapped(motion.position) - self.shape.centre();
+    pub(crate) fn set_motion(&mut self, motion: Motion<D>, domain: &Domain<D>) {
+        self.displacement = domain.wrapped(motion.position) - self.shape.centre();
         (self.velocity, self.spin) = (motion.velocity, motion.spin);
     }
 
