@@ -4,12 +4,15 @@
 //! the first body, `xi` tangential displacement. Tangential quantities are kept as `n x ...`
 //! (see [`granular_core::dim`]), so one source serves disks and spheres.
 
+mod hertz;
 mod linear;
-mod rolling;
+mod resistance;
 mod slider;
 
+pub use hertz::{HertzMindlin, HertzNormal};
 pub use linear::{LinearFrictional, LinearNormal};
-pub use rolling::LinearRolling;
+pub use resistance::{Rolling, Twisting};
+pub use slider::{Motion, Slid, Slider};
 
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
@@ -38,6 +41,10 @@ pub struct Meeting<D: Dim> {
     pub start_roll: D::Spin,
     /// Mean spin about the normal \[rad/s\].
     pub twist: f64,
+    /// Difference of the spins about the normal \[rad/s\]; only for laws that resist twisting.
+    pub twisting: f64,
+    /// The same at the start of the step \[rad/s\].
+    pub start_twisting: f64,
     /// `m1 m2 / (m1 + m2)` \[kg\].
     pub effective_mass: f64,
     /// `r1 r2 / (r1 + r2)` \[m\].
@@ -55,7 +62,7 @@ pub struct Load<D: Dim> {
     pub normal: f64,
     /// `n x` tangential force \[N\].
     pub tangential: D::Spin,
-    /// Rolling moment \[N m\].
+    /// Rolling and twisting moment \[N m\].
     pub rolling: D::Spin,
 }
 
@@ -67,6 +74,9 @@ impl<D: Dim> Load<D> {
     }
 }
 
+/// [`LinearFrictional`] with rolling resistance.
+pub type LinearRolling = Rolling<LinearFrictional>;
+
 /// A contact law. Statically typed in the kernels: pass any implementation to
 /// [`Dem::with_law`](crate::Dem::with_law).
 pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
@@ -74,6 +84,8 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     type Memory: Copy + Default + PartialEq + Stored + Debug + Send + Sync + 'static;
     /// Whether tangential motion matters: without it grains do not turn and have no spin.
     const TANGENTIAL: bool;
+    /// Whether the law reads [`Meeting::twisting`].
+    const TWISTING: bool = false;
     /// Name, for reports.
     const NAME: &'static str;
 
@@ -96,4 +108,24 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// The load between steps and the energy stored in springs \[J\], for output. The step of the
     /// meeting is the last one taken.
     fn at_rest(&self, meeting: &Meeting<D>, memory: Self::Memory) -> (Load<D>, f64);
+}
+
+/// A law with a tangential spring, whose stiffness and damping may also resist rolling and
+/// twisting ([`Rolling`], [`Twisting`]).
+pub trait Frictional<D: Dim>: ContactLaw<D> {
+    /// Names of the law with rolling resistance, and with rolling and twisting resistance.
+    const RESISTING: [&'static str; 2];
+    /// Stiffness and damping of the tangential spring in this meeting.
+    fn slider(&self, meeting: &Meeting<D>) -> Slider;
+    /// Stiffness that springs had at the last step \[N/m\].
+    fn last_stiffness(&self, last: &Self::Memory) -> f64;
+    /// Carries a spring from the last step over to a stiffness that changed since; returns the
+    /// energy that this takes \[J\]. `advance` is how far the spring will move in this step.
+    #[inline(always)]
+    fn carry<S: Linear>(&self, last: &Self::Memory, slider: &Slider, spring: &mut S, advance: S) -> f64 {
+        let _ = (last, slider, spring, advance);
+        0.0
+    }
+    /// Energy that a spring holds when its contact ends \[J\].
+    fn held<S: Linear>(&self, last: &Self::Memory, spring: S) -> f64;
 }

@@ -1,10 +1,10 @@
 //! Linear springs and dashpots.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Load, Meeting};
+use super::{ContactLaw, Frictional, Load, Meeting};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
-use granular_core::Dim;
+use granular_core::{Dim, Linear};
 
 /// Linear spring and dashpot along the normal, `F = k delta + c approach` \[DEM-3\].
 ///
@@ -70,9 +70,31 @@ pub struct LinearFrictional {
 
 impl LinearFrictional {
     #[inline(always)]
-    pub(crate) fn slider(&self, effective_mass: f64) -> Slider {
+    fn slider(&self, effective_mass: f64) -> Slider {
         let damping = self.damping_ratio * self.normal.damping_factor * effective_mass.sqrt();
         Slider { stiffness: self.tangential_stiffness, damping }
+    }
+}
+
+impl<D: Dim> Frictional<D> for LinearFrictional {
+    const RESISTING: [&'static str; 2] = [
+        "linear with friction and rolling resistance",
+        "linear with friction, rolling and twisting resistance",
+    ];
+
+    #[inline(always)]
+    fn slider(&self, meeting: &Meeting<D>) -> Slider {
+        self.slider(meeting.effective_mass)
+    }
+
+    #[inline(always)]
+    fn last_stiffness(&self, _: &D::Spin) -> f64 {
+        self.tangential_stiffness
+    }
+
+    #[inline(always)]
+    fn held<S: Linear>(&self, _: &D::Spin, spring: S) -> f64 {
+        self.slider(1.0).held(spring)
     }
 }
 
@@ -120,7 +142,8 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
         let (mut load, energy) = self.normal.at_rest(m, ());
         let cap = self.friction * load.normal.max(0.0);
-        let (force, stored) = self.slider(m.effective_mass).at_rest(memory, m.slip, m.last_dt, cap);
+        let slider = self.slider(m.effective_mass);
+        let (force, stored) = slider.at_rest(memory, m.slip, (m.last_dt, self.tangential_stiffness), cap);
         load.tangential = force;
         (load, energy + stored)
     }

@@ -14,38 +14,45 @@ use granular_core::{Dim, Linear};
 /// to `cap / k`; with one, a spring that was set to `cap / k` would gain the energy that the
 /// dashpot held back.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Slider {
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
+pub struct Slider {
+    /// Stiffness \[N/m\].
+    pub stiffness: f64,
+    /// Damping while the surfaces overlap \[N s/m\].
+    pub damping: f64,
 }
 
 /// Outcome of [`Slider::load`].
-pub(crate) struct Slid<S> {
+#[derive(Clone, Copy, Debug)]
+pub struct Slid<S> {
     /// Force on the first body.
-    pub(crate) force: S,
+    pub force: S,
     /// Energy lost in the dashpot over the step.
-    pub(crate) damped: f64,
+    pub damped: f64,
     /// Energy lost by sliding over the step.
-    pub(crate) slid: f64,
+    pub slid: f64,
 }
 
 /// How two surfaces pass each other in a step.
-pub(crate) struct Motion<S> {
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<S> {
     /// At the middle of the step, as predicted.
-    pub(crate) rate: S,
+    pub rate: S,
     /// At its start.
-    pub(crate) start_rate: S,
+    pub start_rate: S,
     /// Share of the step during which they overlap.
-    pub(crate) presence: f64,
+    pub presence: f64,
     /// Whether they meet within the step.
-    pub(crate) enters: bool,
-    pub(crate) dt: f64,
-    pub(crate) last_dt: f64,
+    pub enters: bool,
+    /// The step \[s\].
+    pub dt: f64,
+    /// The step before \[s\].
+    pub last_dt: f64,
 }
 
 impl<S> Motion<S> {
+    /// At these rates in the middle and at the start of the step.
     #[inline(always)]
-    pub(crate) fn of<D: Dim>(m: &Meeting<D>, rate: S, start_rate: S) -> Self {
+    pub fn of<D: Dim>(m: &Meeting<D>, rate: S, start_rate: S) -> Self {
         let enters = m.presence < 1.0 && m.approach > 0.0;
         Self { rate, start_rate, presence: m.presence, enters, dt: m.dt, last_dt: m.last_dt }
     }
@@ -55,15 +62,16 @@ impl<S> Motion<S> {
     /// After: nothing, but for surfaces that met within the step, so that the next advance ends
     /// at the middle of the next step.
     #[inline(always)]
-    pub(crate) fn advances(&self) -> (f64, f64) {
+    pub fn advances(&self) -> (f64, f64) {
         let time = self.presence * self.dt;
         if self.enters { (0.5 * time, 0.5 * (time - self.dt)) } else { (0.5 * (self.last_dt + time), 0.0) }
     }
 }
 
 impl Slider {
+    /// The load over one step under a cap \[N\]; the spring moves on.
     #[inline(always)]
-    pub(crate) fn load<S: Linear>(&self, spring: &mut S, motion: &Motion<S>, cap: f64) -> Slid<S> {
+    pub fn load<S: Linear>(&self, spring: &mut S, motion: &Motion<S>, cap: f64) -> Slid<S> {
         let (before, after) = motion.advances();
         let (rate, dt) = (motion.rate, motion.dt);
         let trial = *spring + motion.start_rate * before;
@@ -88,20 +96,43 @@ impl Slider {
         Slid { force: direction * cap, damped, slid: mean * slip }
     }
 
+    /// Carries a spring over from another stiffness, `last`, and returns the energy lost \[J\].
+    ///
+    /// Where the contact stiffens the force stays, where it softens the displacement does: either
+    /// way the spring loses energy and none is created \[Thornton2013\]. The loss at softening
+    /// is taken half way through the `advance` that follows, so that work, stored energy and
+    /// losses balance to the second order.
+    #[inline(always)]
+    pub fn carry<S: Linear>(&self, spring: &mut S, last: f64, advance: S) -> f64 {
+        let now = self.stiffness;
+        if now > last {
+            let ratio = last / now;
+            let lost = 0.5 * last * (1.0 - ratio) * spring.length_squared();
+            *spring = *spring * ratio;
+            lost
+        } else {
+            0.5 * (last - now) * spring.dot(*spring + advance)
+        }
+    }
+
     /// Energy held at the end of a contact. The dashpot then lets the spring go; without one the
     /// spring has slid back with the cap already.
     #[inline(always)]
-    pub(crate) fn held<S: Linear>(&self, spring: S) -> f64 {
+    pub fn held<S: Linear>(&self, spring: S) -> f64 {
         if self.damping > 0.0 { 0.5 * self.stiffness * spring.length_squared() } else { 0.0 }
     }
 
     /// Force and stored energy between steps: the spring is half a step behind, and what the next
     /// step will slide is still stored.
-    pub(crate) fn at_rest<S: Linear>(&self, spring: S, rate: S, last_dt: f64, cap: f64) -> (S, f64) {
+    ///
+    /// The energy is that of the stiffness at the last step: what a change since will take is
+    /// still stored.
+    pub fn at_rest<S: Linear>(&self, spring: S, rate: S, last: (f64, f64), cap: f64) -> (S, f64) {
+        let (last_dt, last_stiffness) = last;
         let spring = spring + rate * (0.5 * last_dt);
         let stuck = -(spring * self.stiffness + rate * self.damping);
         let size = stuck.length();
         let force = if size <= cap { stuck } else { stuck * (cap / size) };
-        (force, 0.5 * self.stiffness * spring.length_squared())
+        (force, 0.5 * last_stiffness * spring.length_squared())
     }
 }

@@ -105,6 +105,9 @@ fn properties(friction: f64, damping_ratio: f64) -> PairProperties {
         damping_ratio,
         friction,
         rolling_friction: 0.2,
+        twisting_friction: 0.2,
+        effective_modulus: 1e9,
+        effective_shear_modulus: 3e8,
     }
 }
 
@@ -128,6 +131,8 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
         start_slip: <D::Spin as Linear>::ZERO,
         start_roll: <D::Spin as Linear>::ZERO,
         twist: 0.0,
+        twisting: 0.0,
+        start_twisting: 0.0,
         effective_mass: 1e-3,
         effective_radius: 1e-3,
         dt,
