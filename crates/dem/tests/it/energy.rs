@@ -162,7 +162,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
     cycle
 }
 
-fn lost(tally: &Tally<true>) -> f64 {
+pub(crate) fn lost(tally: &Tally<true>) -> f64 {
     // The tally prints what it holds; its sums are not public.
     let text = format!("{tally:?}");
     let number = |part: &str| {

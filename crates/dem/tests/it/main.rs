@@ -8,6 +8,7 @@ mod contract;
 mod energy;
 mod extremes;
 mod frames;
+mod hertz;
 mod impact;
 mod incline;
 mod lists;
