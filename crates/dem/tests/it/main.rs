@@ -17,6 +17,7 @@ mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod twisting;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
