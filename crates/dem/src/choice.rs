@@ -6,7 +6,8 @@ use crate::law::{
 };
 use crate::material::Materials;
 use crate::setup::{ContactModel, Options};
-use granular_core::{Blocks, Dim};
+use granular_core::{Blocks, D2, D3, Dim};
+use std::any::{Any, TypeId};
 
 /// Whether anything turns grains.
 pub(crate) fn needs_rotation(materials: &Materials) -> bool {
@@ -16,7 +17,34 @@ pub(crate) fn needs_rotation(materials: &Materials) -> bool {
 }
 
 /// Contacts of the least law that does what the materials say.
+///
+/// The kernels of all laws are compiled here, once for the plane and once for space, and not again
+/// in every crate that builds a simulation.
 pub(crate) fn choose_law<D: Dim>(
+    materials: &Materials,
+    options: &Options,
+    blocks: Blocks,
+    turning: bool,
+) -> Box<dyn Pairs<D>> {
+    let chosen: Box<dyn Any> = if TypeId::of::<D>() == TypeId::of::<D2>() {
+        Box::new(in_plane(materials, options, blocks, turning))
+    } else {
+        Box::new(in_space(materials, options, blocks, turning))
+    };
+    *chosen.downcast::<Box<dyn Pairs<D>>>().expect("there are two dimensions")
+}
+
+#[inline(never)]
+fn in_plane(materials: &Materials, options: &Options, blocks: Blocks, turning: bool) -> Box<dyn Pairs<D2>> {
+    of_model::<D2>(materials, options, blocks, turning)
+}
+
+#[inline(never)]
+fn in_space(materials: &Materials, options: &Options, blocks: Blocks, turning: bool) -> Box<dyn Pairs<D3>> {
+    of_model::<D3>(materials, options, blocks, turning)
+}
+
+fn of_model<D: Dim>(
     materials: &Materials,
     options: &Options,
     blocks: Blocks,

@@ -222,6 +222,18 @@ impl Materials {
         self.list.iter()
     }
 
+    /// Gives a material its normal stiffness \[N/m\], once the size of the grains is known.
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn set_normal_stiffness(&mut self, id: MaterialId, stiffness: f64) -> Result<(), SetupError> {
+        let material = &mut self.list[id.0 as usize];
+        let changed = Material { normal_stiffness: stiffness, elasticity: None, ..*material };
+        check(&changed)?;
+        material.normal_stiffness = stiffness;
+        Ok(())
+    }
+
     /// Changes the friction of one material \[-\]; stated pairs keep theirs.
     pub fn set_friction(&mut self, id: MaterialId, friction: f64) {
         self.list[id.0 as usize].friction = friction;
