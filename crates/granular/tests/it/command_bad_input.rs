@@ -40,6 +40,43 @@ const SCENE_CASES: &[Case<'_>] = &[
     ("aspect_ratio: 0.8", "aspect_ratio: NaN", 2, &["`NaN` is not a finite number"]),
     ("\"0.1 s\"", "\"nan s\"", 2, &["`nan s` is not finite", "a time such as"]),
     ("friction: 0.5)", "friction: -0.5)", 2, &["`materials.glass.friction` is -0.5", "zero or more"]),
+    // What makes a contact stiff.
+    (
+        "normal_stiffness: \"1e5 N/m\", ",
+        "",
+        2,
+        &["`materials.glass.normal_stiffness` is missing", "young_modulus and poisson_ratio", "small.ron:"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\"",
+        2,
+        &["`materials.glass.poisson_ratio` is missing", "beside young_modulus"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\", poisson_ratio: 0.7",
+        2,
+        &["`materials.glass.typical_load` is missing", "a load per metre of depth"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\", poisson_ratio: 0.7, typical_load: \"10 N/m\"",
+        2,
+        &["`materials.glass.poisson_ratio` is 0.7", "above -1 and at most 0.5"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "normal_stiffness: \"1e5 N/m\", typical_load: \"10 N/m\"",
+        2,
+        &["`materials.glass.typical_load` is 10 N/m", "nothing, since normal_stiffness is given"],
+    ),
+    (
+        "Dem(())",
+        "Dem((contact: Hertz))",
+        2,
+        &["small.ron:", "`materials.glass.young_modulus` is missing", "since contacts are Hertz"],
+    ),
     ("gravity: [0.0, -9.81]", "gravity: [0.0]", 2, &["`gravity` is a list of 1", "2 values, one per axis"]),
     ("Grains(120)", "Grains(0)", 2, &["`sample.extent` is a column of 0 grains", "at least one grain"]),
     (
