@@ -49,7 +49,7 @@ const SCENE_CASES: &[Case<'_>] = &[
     ),
     (
         "normal_stiffness: \"1e5 N/m\"",
-        "young_modulus: \"1 GPa\"",
+        "young_modulus: \"1 GPa\", typical_load: \"10 N/m\"",
         2,
         &["`materials.glass.poisson_ratio` is missing", "beside young_modulus"],
     ),
