@@ -190,7 +190,7 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("loss_sliding_at_walls", "J", "energy lost by sliding at walls"),
     ("loss_normal_damping", "J", "energy lost in normal dashpots"),
     ("loss_tangential_damping", "J", "energy lost in tangential dashpots"),
-    ("loss_rolling", "J", "energy lost by rolling resistance"),
+    ("loss_rolling", "J", "energy lost by rolling and twisting resistance"),
     ("energy_residual", "J", "what the energy ledger misses"),
     ("largest_overlap", "%", "largest overlap over the radius of the smaller grain"),
     ("contacts", "1", "number of contacts"),

@@ -18,8 +18,10 @@ mod conservation;
 pub(crate) mod fit;
 pub(crate) mod fluid;
 mod grading;
+pub(crate) mod hertz;
 pub(crate) mod impact;
 mod incline;
+mod laws;
 mod oblique;
 pub(crate) mod parallel;
 mod plane;
@@ -28,6 +30,7 @@ pub(crate) mod restitution;
 mod rolling;
 mod row;
 pub mod stability;
+pub(crate) mod strike;
 mod table;
 
 pub use row::{Row, Tier};
@@ -67,6 +70,8 @@ pub const CASES: &[Case] = &[
         run: restitution::error,
     },
     Case { name: "contact_time", about: "contact time and largest overlap", run: restitution::contact },
+    Case { name: "hertz_impact", about: "impacts of elastic grains and their order", run: hertz::impact },
+    Case { name: "chung_ooi", about: "benchmark impacts 1 to 4 and 7", run: hertz::chung_ooi },
     Case { name: "oblique_impact", about: "gross sliding and sticking on a plane", run: oblique::run },
     Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },

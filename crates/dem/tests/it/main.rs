@@ -8,6 +8,7 @@ mod contract;
 mod energy;
 mod extremes;
 mod frames;
+mod hertz;
 mod impact;
 mod incline;
 mod lists;
@@ -16,6 +17,7 @@ mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod twisting;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
