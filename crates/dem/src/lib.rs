@@ -33,6 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cell;
 mod choice;
 mod contacts;
 mod dem;
@@ -51,6 +52,7 @@ pub mod spec;
 mod state;
 pub mod wall;
 
+pub use cell::{Cell, CellControl, Control, Matrix};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;
