@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod coarse;
 mod contacts;
 mod dem;
 mod grains;
@@ -49,6 +50,7 @@ pub mod spec;
 mod state;
 pub mod wall;
 
+pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;
