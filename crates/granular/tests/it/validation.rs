@@ -4,6 +4,7 @@ mod ball_on_incline;
 mod bouncing_ball;
 mod carried_disk;
 mod cavity;
+mod coarse_graining;
 mod column_runout;
 mod contact_time;
 mod couette;
