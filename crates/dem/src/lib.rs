@@ -35,6 +35,7 @@
 
 pub mod cell;
 mod choice;
+pub mod coarse;
 mod contacts;
 mod dem;
 mod grains;
@@ -53,6 +54,7 @@ mod state;
 pub mod wall;
 
 pub use cell::{Cell, CellControl, Control, Matrix};
+pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod cell;
+mod coarse;
 mod conservation;
 mod contract;
 mod energy;
