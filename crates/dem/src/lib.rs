@@ -33,7 +33,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cell;
 mod choice;
+pub mod coarse;
 mod contacts;
 mod dem;
 mod grains;
@@ -51,6 +53,8 @@ pub mod spec;
 mod state;
 pub mod wall;
 
+pub use cell::{Cell, CellControl, Control, Matrix};
+pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;

@@ -80,6 +80,9 @@ impl<D: Dim> Dem<D> {
     /// Contacts that one of the smallest grains can have at once.
     fn most_neighbours(&self) -> usize {
         let kissing = if D::N == 2 { 6 } else { 12 };
+        if self.cell.is_some() {
+            return kissing;
+        }
         kissing.min((self.len().saturating_sub(1) + self.walls.len()).max(1))
     }
 
@@ -120,7 +123,7 @@ impl<D: Dim> Dem<D> {
     /// Largest overlap over the radius of the smaller grain.
     pub fn deepest_overlap(&self) -> f64 {
         let mut deepest = 0.0_f64;
-        self.pairs.visit(&self.view(), &mut |contact| {
+        self.visit_contacts(&mut |contact| {
             let own = self.grains.radius[contact.first];
             let smaller = match contact.partner {
                 crate::Partner::Grain(second) => own.min(self.grains.radius[second]),

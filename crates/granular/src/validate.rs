@@ -13,6 +13,7 @@
 
 pub(crate) mod chance;
 mod claims;
+mod coarse;
 pub(crate) mod collapse;
 mod conservation;
 pub(crate) mod fit;
@@ -78,6 +79,7 @@ pub const CASES: &[Case] = &[
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
+    Case { name: "coarse_graining", about: "continuum fields from grains", run: coarse::run },
     Case {
         name: "poiseuille",
         about: "flow between plates, steady and started",

@@ -134,7 +134,13 @@ impl<D: Dim> Dem<D> {
             let (first, second) = (at_wall(b, (m, r)), at_wall(a, (n, s)));
             let (mass, radius) = if first.0 <= second.0 { first } else { second };
             if mass.is_finite() {
-                let couple = Couple { properties, effective_mass: mass, effective_radius: radius, mass, on_wall: true };
+                let couple = Couple {
+                    properties,
+                    effective_mass: mass,
+                    effective_radius: radius,
+                    mass,
+                    on_wall: true,
+                };
                 add(couple, "grain on wall", radius);
             }
         }

@@ -4,7 +4,7 @@ use crate::conservation::{Case, any_case, cases};
 use crate::sample::{Lattice, Random, down};
 use granular_core::glam::{DMat3, DVec2, DVec3};
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
-use granular_dem::{Dem, Grain, Material, Materials, Options, Setup, Tension, Wall};
+use granular_dem::{Dem, Grain, Material, Materials, Options, Setup, Wall};
 use proptest::prelude::*;
 
 const STEPS: u64 = 300;

@@ -3,6 +3,8 @@
 // Outside `#[test]` functions clippy does not see that this is a test.
 #![allow(clippy::unwrap_used)]
 
+mod cell;
+mod coarse;
 mod conservation;
 mod contract;
 mod energy;

@@ -5,6 +5,7 @@ mod bouncing_ball;
 mod carried_disk;
 mod cavity;
 mod chung_ooi;
+mod coarse_graining;
 mod column_runout;
 mod contact_time;
 mod couette;
