@@ -71,12 +71,6 @@ const SCENE_CASES: &[Case<'_>] = &[
         2,
         &["`materials.glass.typical_load` is 10 N/m", "nothing, since normal_stiffness is given"],
     ),
-    (
-        "Dem(())",
-        "Dem((contact: Hertz))",
-        2,
-        &["small.ron:", "`materials.glass.young_modulus` is missing", "since contacts are Hertz"],
-    ),
     ("gravity: [0.0, -9.81]", "gravity: [0.0]", 2, &["`gravity` is a list of 1", "2 values, one per axis"]),
     ("Grains(120)", "Grains(0)", 2, &["`sample.extent` is a column of 0 grains", "at least one grain"]),
     (
@@ -196,6 +190,22 @@ fn a_bad_scene_is_refused_with_its_place_and_leaves_nothing() {
             assert!(elsewhere || message.contains(&place), "{place} is not in:\n{message}");
         }
     }
+}
+
+#[test]
+fn hertz_contacts_ask_every_material_for_its_elastic_constants() {
+    let scratch = Scratch::new("hertz");
+    let parts = [
+        "`materials.glass.young_modulus` is missing",
+        "`materials.wall.young_modulus` is missing",
+        "young_modulus and poisson_ratio, since contacts are Hertz",
+    ];
+    fails(&scratch, SMALL.as_bytes(), &["--set", "solvers.grains.contact=Hertz"], 2, &parts);
+    // With them the same scene runs, its linear stiffness unused.
+    let text = SMALL
+        .replace("restitution: 0.75", "young_modulus: \"20 GPa\", poisson_ratio: 0.25, restitution: 0.75");
+    fs::write(scratch.path("small.ron"), text).unwrap();
+    scratch.granular(&["check", "small.ron", "--set", "solvers.grains.contact=Hertz"]).expect(0);
 }
 
 #[test]
