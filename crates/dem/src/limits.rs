@@ -89,9 +89,9 @@ impl<D: Dim> Dem<D> {
     /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
     /// through the height of the sample.
     fn softness(&self, pairs: &[Stiffest]) -> Bound {
-        let fastest = self.fastest_impact();
         let (smallest, _) = self.grains.radius_range();
-        let deepest = pairs.iter().map(|pair| pair.deepest).fold(0.0, f64::max);
+        let hardest = pairs.iter().max_by(|a, b| a.deepest.total_cmp(&b.deepest));
+        let (deepest, fastest) = hardest.map_or((0.0, 0.0), |pair| (pair.deepest, pair.speed));
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
@@ -102,17 +102,19 @@ impl<D: Dim> Dem<D> {
         }
     }
 
-    /// The fastest speed there can be \[m/s\]: present speeds, and a fall through the height of
-    /// the sample.
-    pub(crate) fn fastest_impact(&self) -> f64 {
+    /// The fastest present speed, and that of a fall through the height of the sample \[m/s\].
+    pub(crate) fn fastest_speeds(&self) -> (f64, f64) {
         let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
-        let gravity = self.gravity.length();
-        let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        speed.max(fall)
+        (speed, (2.0 * self.gravity.length() * self.extent_along_gravity()).sqrt())
     }
 
+    /// Height of the sample \[m\]; zero without gravity.
     pub(crate) fn extent_along_gravity(&self) -> f64 {
-        let direction = self.gravity * (1.0 / self.gravity.length());
+        let gravity = self.gravity.length();
+        if gravity == 0.0 {
+            return 0.0;
+        }
+        let direction = self.gravity * (1.0 / gravity);
         let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
         let lowest = -self.blocks.largest(|i| self.grains.position[i].dot(direction));
         (highest - lowest).max(0.0)

@@ -17,7 +17,8 @@ pub(super) struct Stiffest {
     pub(super) contact_time: f64,
     /// Shorter Rayleigh time of two spheres in Hertz contact \[s\]; else infinite.
     pub(super) rayleigh_time: f64,
-    /// Overlap of the hardest impact \[m\].
+    /// Speed of the hardest impact \[m/s\], and its overlap \[m\].
+    pub(super) speed: f64,
     pub(super) deepest: f64,
     pub(super) names: String,
     /// What was assumed.
@@ -43,6 +44,7 @@ struct Couple {
     effective_radius: f64,
     /// Of the lighter grain \[kg\].
     mass: f64,
+    on_wall: bool,
 }
 
 impl Oscillator {
@@ -100,13 +102,18 @@ impl<D: Dim> Dem<D> {
             }
         }
         let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
-        let (speed, stack) = (self.fastest_impact(), self.extent_along_gravity());
+        let (present_speed, fall) = self.fastest_speeds();
+        let stack = self.extent_along_gravity();
         let present = self.deepest_overlap();
         let mut pairs = Vec::new();
         let mut add = |couple: Couple, names: &str, smaller: f64| {
             pairs.push(match self.options.contact {
-                ContactModel::Linear => self.linear(&couple, speed, names),
-                ContactModel::Hertz => self.hertz(&couple, speed, (stack, present * smaller), names),
+                ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names),
+                ContactModel::Hertz => {
+                    // Two grains may meet head-on.
+                    let closing = if couple.on_wall { present_speed } else { 2.0 * present_speed };
+                    self.hertz(&couple, closing.max(fall), (stack, present * smaller), names)
+                }
             });
         };
         for (a, b, properties) in self.materials.pairs() {
@@ -117,6 +124,7 @@ impl<D: Dim> Dem<D> {
                     effective_mass: m * n / (m + n),
                     effective_radius: r * s / (r + s),
                     mass: m.min(n),
+                    on_wall: false,
                 };
                 add(couple, "grain on grain", r.min(s));
             }
@@ -126,7 +134,13 @@ impl<D: Dim> Dem<D> {
             let (first, second) = (at_wall(b, (m, r)), at_wall(a, (n, s)));
             let (mass, radius) = if first.0 <= second.0 { first } else { second };
             if mass.is_finite() {
-                let couple = Couple { properties, effective_mass: mass, effective_radius: radius, mass };
+                let couple = Couple {
+                    properties,
+                    effective_mass: mass,
+                    effective_radius: radius,
+                    mass,
+                    on_wall: true,
+                };
                 add(couple, "grain on wall", radius);
             }
         }
@@ -139,6 +153,7 @@ impl<D: Dim> Dem<D> {
             oscillator: Oscillator::linear(properties, couple.effective_mass, tension),
             contact_time: properties.contact_time(couple.effective_mass, tension),
             rayleigh_time: f64::INFINITY,
+            speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
             names: names.to_owned(),
             meeting: "lightest grains".to_owned(),
@@ -163,6 +178,7 @@ impl<D: Dim> Dem<D> {
             oscillator: Oscillator::hertz(couple, overlap, tension),
             contact_time: impact.duration(properties.zeta(tension), tension).min(half_period),
             rayleigh_time: if D::TWISTS { self.rayleigh_time() } else { f64::INFINITY },
+            speed,
             deepest,
             names: names.to_owned(),
             meeting: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
