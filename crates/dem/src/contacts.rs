@@ -5,12 +5,15 @@
 //! block goes to `outgoing`, from where that block collects it in the order of its `inbox`.
 //! Every grain thus sums its loads in an order that depends on the state alone.
 
+use crate::facet_lists::{self, FacetList};
 use crate::grains::Grains;
-use crate::kernel::{Kernel, Laws, Owed, Trouble, View, meet_wall, overlapping, push_of};
-use crate::law::{ContactLaw, Meeting};
+use crate::kernel::{Kernel, Laws, Owed, Trouble, View, contact_of, meet_wall, overlapping};
+use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
-use crate::lists::BlockList;
+use crate::lists::{BlockList, Places};
 use crate::material::{Materials, Tension};
+use crate::moving::Reaction;
+use crate::wall::Wall;
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, PerBlock, Section, SnapshotError};
 
@@ -51,6 +54,8 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]);
     /// Adds what other blocks owe to the grains of `block`.
     fn collect(&self, block: usize, force: &mut [D::Vec], torque: &mut [D::Spin]);
+    /// Adds up the push on each wall in the last push, when walls move.
+    fn add_reactions(&self, to: &mut [Reaction<D>]);
     /// Losses of the last push, and a contact that was too deep.
     fn outcome(&self) -> (Losses, Option<Trouble>);
     /// Visits all contacts that overlap, in a fixed order.
@@ -59,8 +64,9 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn visit_listed(&self, visit: &mut dyn FnMut(usize, usize));
     /// Takes changed materials.
     fn update(&mut self, materials: &Materials, tension: Tension);
-    fn save(&self, grains: &Grains<D>, to: &mut Section);
-    fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError>;
+    fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section);
+    fn restore(&mut self, from: &Section, grains: &Grains<D>, walls: &[Wall<D>])
+    -> Result<(), SnapshotError>;
     fn law_name(&self) -> &'static str;
     fn tangential(&self) -> bool;
     /// Bytes in lists, and bytes that one contact remembers.
@@ -81,6 +87,9 @@ pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
+    facets: Vec<FacetList<D, L::Memory>>,
+    /// Push on each wall by the grains of each block; empty when no wall moves.
+    reactions: Vec<Vec<Reaction<D>>>,
     outgoing: Vec<Vec<Owed<D>>>,
     inbox: Vec<Vec<Receipt>>,
     grid: CellGrid<D>,
@@ -95,6 +104,8 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             materials: materials.len(),
             blocks,
             lists: (0..count).map(|_| BlockList::default()).collect(),
+            facets: (0..count).map(|_| FacetList::default()).collect(),
+            reactions: vec![Vec::new(); count],
             outgoing: vec![Vec::new(); count],
             inbox: vec![Vec::new(); count],
             grid: CellGrid::default(),
@@ -113,12 +124,14 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         let (laws, blocks) = (Laws { list: &self.laws, materials: self.materials }, self.blocks);
         let work = (
             PerBlock(&mut self.lists),
+            (PerBlock(&mut self.facets), PerBlock(&mut self.reactions)),
             PerBlock(&mut self.outgoing),
             PerBlock(&mut self.results),
             force,
             torque,
         );
-        blocks.for_each(work, |block, (list, outgoing, result, force, torque)| {
+        let moving = !view.poses.is_empty();
+        blocks.for_each(work, |block, (list, (facets, reactions), outgoing, result, force, torque)| {
             let mut kernel = Kernel::<D, L, LEDGER> {
                 view,
                 laws,
@@ -129,7 +142,14 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
                 trouble: None,
             };
             kernel.pairs(&mut list.0[0], &mut outgoing.0[0]);
-            kernel.walls(&mut list.0[0]);
+            let reactions = &mut reactions.0[0];
+            if moving {
+                reactions.fill(Reaction::default());
+                kernel.walls::<true>(&mut list.0[0], reactions);
+            } else {
+                kernel.walls::<false>(&mut list.0[0], reactions);
+            }
+            kernel.facets(&mut facets.0[0], reactions);
             result.0[0] = (kernel.tally.losses(), kernel.trouble);
         });
     }
@@ -141,11 +161,18 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         self.grid.fill(view.position, 2.0 * largest + skin);
         if let Some(order) = order {
             crate::lists::reorder(&mut self.lists, self.blocks, order, L::reversed);
+            facet_lists::reorder(&mut self.facets, view, self.blocks, order);
         }
         let (grid, blocks) = (&self.grid, self.blocks);
         blocks.for_each(PerBlock(&mut self.lists), |block, list| {
             list.0[0].build(view, grid, blocks.range(block), skin);
         });
+        self.reactions.iter_mut().for_each(|of_block| of_block.resize(view.poses.len(), Reaction::default()));
+        if facet_lists::needed(view.walls) {
+            blocks.for_each(PerBlock(&mut self.facets), |block, list| {
+                list.0[0].build(view, blocks.range(block), skin);
+            });
+        }
         for (block, (list, outgoing)) in self.lists.iter().zip(&mut self.outgoing).enumerate() {
             let owed = list.partners.iter().filter(|&&p| (p as usize) < blocks.range(block).start).count();
             outgoing.clear();
@@ -172,6 +199,15 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         }
     }
 
+    fn add_reactions(&self, to: &mut [Reaction<D>]) {
+        for (wall, sum) in to.iter_mut().enumerate() {
+            for of_block in &self.reactions {
+                sum.force += of_block[wall].force;
+                sum.power += of_block[wall].power;
+            }
+        }
+    }
+
     fn outcome(&self) -> (Losses, Option<Trouble>) {
         let mut losses = Losses::default();
         let mut trouble = None;
@@ -193,12 +229,17 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
                 let (first, wall) = (near.grain as usize, near.wall as usize);
-                let met = meet_wall::<D, L>(view, first, &view.walls[wall]);
+                let met = if view.poses.is_empty() {
+                    meet_wall::<D, L, false>(view, first, wall)
+                } else {
+                    meet_wall::<D, L, true>(view, first, wall)
+                };
                 if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
                     visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Wall(wall)));
                 }
             }
+            facet_lists::visit(&self.facets[block], view, laws, visit);
         }
     }
 
@@ -213,12 +254,20 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         self.laws = (0..n * n).map(|k| L::between(&materials.pair(k / n, k % n), tension)).collect();
     }
 
-    fn save(&self, grains: &Grains<D>, to: &mut Section) {
+    fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section) {
         crate::lists::save(&self.lists, self.blocks, &grains.id, to);
+        facet_lists::save(&self.facets, walls, &grains.id, to);
     }
 
-    fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError> {
-        crate::lists::restore(&mut self.lists, self.blocks, &grains.id, from)
+    fn restore(
+        &mut self,
+        from: &Section,
+        grains: &Grains<D>,
+        walls: &[Wall<D>],
+    ) -> Result<(), SnapshotError> {
+        let places = Places::of(&grains.id)?;
+        crate::lists::restore(&mut self.lists, self.blocks, &places, from)?;
+        facet_lists::restore(&mut self.facets, walls, self.blocks, &places, from)
     }
 
     fn law_name(&self) -> &'static str {
@@ -231,27 +280,9 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn bytes(&self) -> (usize, usize) {
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
+        let facets: usize = self.facets.iter().map(FacetList::bytes).sum();
         let outgoing: usize = self.outgoing.iter().map(|o| o.capacity() * size_of::<Owed<D>>()).sum();
         let inbox: usize = self.inbox.iter().map(|i| i.capacity() * size_of::<Receipt>()).sum();
-        (lists + outgoing + inbox, size_of::<L::Memory>())
-    }
-}
-
-fn contact_of<D: Dim, L: ContactLaw<D>>(
-    law: &L,
-    meeting: &Meeting<D>,
-    memory: L::Memory,
-    first: usize,
-    partner: Partner,
-) -> Contact<D> {
-    let (load, energy) = law.at_rest(meeting, memory);
-    Contact {
-        first,
-        partner,
-        normal: meeting.normal,
-        overlap: meeting.overlap,
-        normal_force: load.normal,
-        force: push_of::<D, L>(&load, meeting.normal),
-        energy,
+        (lists + facets + outgoing + inbox, size_of::<L::Memory>())
     }
 }

@@ -1,11 +1,13 @@
 //! The solver: set-up, the step, and changes between stages.
 
+use crate::clock::Clock;
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
 use crate::kernel::{Trouble, View};
 use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
+use crate::moving::{Movers, Reaction};
 use crate::setup::{LeverArm, Options, Setup, check_options};
 use crate::wall::Wall;
 use crate::{lists, motion};
@@ -30,6 +32,8 @@ const SMALLEST_BLOCK: usize = 128;
 pub struct Dem<D: Dim> {
     pub(crate) materials: Materials,
     pub(crate) walls: Vec<Wall<D>>,
+    pub(crate) movers: Movers<D>,
+    pub(crate) clock: Clock,
     pub(crate) gravity: D::Vec,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
@@ -92,7 +96,10 @@ impl<D: Dim> Dem<D> {
             return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
         }
         let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
+        let movers = Movers::of(&walls)?;
         let mut dem = Self {
+            movers,
+            clock: Clock::default(),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
             speeds: vec![0; blocks.count()],
@@ -191,6 +198,27 @@ impl<D: Dim> Dem<D> {
         found.is_some()
     }
 
+    /// Starts or holds the moving wall of this name, where it is. Returns whether there is one.
+    pub fn set_moving(&mut self, name: &str, moves: bool) -> bool {
+        let Some(wall) = self.walls.iter().position(|wall| wall.name == name) else { return false };
+        let time = self.clock.time();
+        let found = self.movers.set_running(wall, moves, time);
+        if found {
+            self.movers.place(time);
+        }
+        found
+    }
+
+    /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
+    pub fn wall_work(&self) -> f64 {
+        self.movers.work
+    }
+
+    /// Simulated time since the start \[s\].
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
     /// Changes gravity \[m/s^2\].
     pub fn set_gravity(&mut self, gravity: D::Vec) {
         self.change(|dem| dem.gravity = gravity);
@@ -236,7 +264,7 @@ impl<D: Dim> Dem<D> {
 
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
-        view_of(&self.grains, &self.walls, &self.options, self.last_dt)
+        view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
@@ -244,7 +272,10 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.skin.max(4.0 * stride);
         self.travel = 0.0;
-        self.pairs.list(&view_of(&self.grains, &self.walls, &self.options, self.last_dt), self.reach, order);
+        let (_, largest) = self.grains.radius_range();
+        self.movers.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let view = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
+        self.pairs.list(&view, self.reach, order);
     }
 
     /// Sorts grains in memory when the count of steps says so.
@@ -263,7 +294,11 @@ impl<D: Dim> Dem<D> {
 
     /// One step between its two halves: lists, loads, kick.
     fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
-        let stride = motion::fastest(&self.speeds) * dt;
+        let mut stride = motion::fastest(&self.speeds) * dt;
+        if !self.movers.is_empty() {
+            stride = stride.max(self.movers.fastest(dt) * dt);
+            self.movers.place_in_step(self.clock.time(), dt);
+        }
         if !stride.is_finite() {
             return Err(self.not_finite());
         }
@@ -273,12 +308,27 @@ impl<D: Dim> Dem<D> {
         }
         self.push(dt, stride);
         self.last_dt = dt;
+        if !self.movers.is_empty() {
+            self.move_walls(dt);
+        }
         let (pairs, gravity) = (self.pairs.as_ref(), self.gravity);
         motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
         self.steps += 1;
+        self.clock.step();
         let (losses, trouble) = self.pairs.outcome();
         self.losses += losses;
+        if !self.losses.total().is_finite() {
+            let (solver, quantity, step) = ("dem", "losses of energy", self.steps);
+            return Err(StepError::NotFinite { solver, quantity, id: 0, step });
+        }
         trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
+    }
+
+    /// Tells walls how grains pushed them.
+    fn move_walls(&mut self, dt: f64) {
+        self.movers.reactions.fill(Reaction::default());
+        self.pairs.add_reactions(&mut self.movers.reactions);
+        self.movers.take_reactions(dt, self.options.ledger);
     }
 
     /// Writes the loads of all contacts where the accelerations will be.
@@ -290,7 +340,7 @@ impl<D: Dim> Dem<D> {
             spin: &self.grains.middle_spin,
             dt,
             margin,
-            ..view_of(&self.grains, &self.walls, &self.options, self.last_dt)
+            ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
         };
         self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
         (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
@@ -317,7 +367,7 @@ impl<D: Dim> Dem<D> {
 
 fn view_of<'a, D: Dim>(
     grains: &'a Grains<D>,
-    walls: &'a [Wall<D>],
+    (walls, movers): (&'a [Wall<D>], &'a Movers<D>),
     options: &Options,
     last_dt: f64,
 ) -> View<'a, D> {
@@ -332,6 +382,7 @@ fn view_of<'a, D: Dim>(
         material: &grains.material,
         first_material: grains.first_material,
         walls,
+        poses: &movers.poses,
         dt: 0.0,
         last_dt,
         margin: 0.0,
@@ -381,6 +432,7 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.clock.run_at(dt);
         // Between two steps of one call, the end of one and the start of the next share a pass.
         let mut opened = false;
         for remaining in (0..steps).rev() {
@@ -391,6 +443,7 @@ impl<D: Dim> Solver for Dem<D> {
             opened = remaining > 0 && !self.sorts_after(1);
             self.load_and_kick(dt, opened)?;
         }
+        self.movers.place(self.clock.time());
         Ok(())
     }
 

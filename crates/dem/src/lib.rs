@@ -32,8 +32,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod clock;
 mod contacts;
 mod dem;
+mod facet_lists;
+mod facets;
 mod grains;
 mod kernel;
 pub mod law;
@@ -42,6 +45,9 @@ mod limits;
 mod lists;
 pub mod material;
 mod motion;
+mod moving;
+mod pose;
+mod servo;
 mod setup;
 mod show;
 #[cfg(feature = "serde")]
@@ -51,11 +57,14 @@ pub mod wall;
 
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
+pub use facets::Facets;
 pub use grains::Grain;
 pub use law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;
 pub use material::{Material, MaterialId, Materials, PairProperties, SetupError, Tension};
+pub use moving::WallMotion;
+pub use servo::Servo;
 pub use setup::{LeverArm, Options, Setup};
 pub use show::Energies;
 pub use wall::{Shape, Wall};

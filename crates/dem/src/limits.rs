@@ -3,6 +3,7 @@
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
 use crate::setup::LeverArm;
+use crate::wall::{Shape, Wall};
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
 
 /// Overlap over radius above which an impact is called too soft.
@@ -59,6 +60,7 @@ impl<D: Dim> Dem<D> {
             rule: StepRule::AtMost,
             why: format!("leapfrog with damping, {neighbours} contacts per grain, {}", tightest.names),
         });
+        report.steps.extend(self.servo_limits().min_by(|a, b| a.dt.total_cmp(&b.dt)));
         report.bounds.push(self.softness(&stiffest));
         report.bounds.push(Bound {
             name: "overlap at the start",
@@ -98,7 +100,34 @@ impl<D: Dim> Dem<D> {
     /// Contacts that one of the smallest grains can have at once.
     fn most_neighbours(&self) -> usize {
         let kissing = if D::N == 2 { 6 } else { 12 };
-        kissing.min((self.len().saturating_sub(1) + self.walls.len()).max(1))
+        let surfaces: usize = self
+            .walls
+            .iter()
+            .map(|wall| match &wall.shape {
+                Shape::Facets(facets) => facets.len(),
+                _ => 1,
+            })
+            .sum();
+        kissing.min((self.len().saturating_sub(1) + surfaces).max(1))
+    }
+
+    /// A wall under a force swings on the springs of the grains at it, of which a layer across the sample has
+    /// about `2 n^((d - 1) / d)`.
+    fn servo_limits(&self) -> impl Iterator<Item = StepLimit> {
+        let layer = 2.0 * (self.len() as f64).powf(1.0 - 1.0 / D::N as f64);
+        let grains = layer.min(self.len() as f64).max(1.0);
+        self.movers.servos().map(move |(wall, servo)| {
+            let Wall { name, material, .. } = &self.walls[wall];
+            let stiffness = (0..self.materials.len())
+                .map(|other| self.materials.pair(other, material.0 as usize).normal_stiffness)
+                .fold(0.0, f64::max);
+            StepLimit {
+                name: "wall under a force",
+                dt: 2.0 * (servo.mass / (grains * stiffness)).sqrt(),
+                rule: StepRule::AtMost,
+                why: format!("`{name}` of {:.3e} kg on the springs of {grains:.0} grains", servo.mass),
+            }
+        })
     }
 
     /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
@@ -107,7 +136,7 @@ impl<D: Dim> Dem<D> {
         let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
         let gravity = self.gravity.length();
         let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        let fastest = speed.max(fall);
+        let fastest = speed.max(fall) + self.movers.fastest_ever();
         let (smallest, _) = self.grains.radius_range();
         let depth =
             |pair: &Stiffest| fastest * (pair.effective_mass / pair.properties.normal_stiffness).sqrt();

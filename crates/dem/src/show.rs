@@ -60,10 +60,10 @@ impl<D: Dim> Dem<D> {
     }
 
     /// What the energy ledger misses \[J\]: energy at the start and put in since, less the
-    /// present energy and all losses. `None` unless the ledger is kept.
+    /// present energy and all losses; the work of moving walls is put in. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        Some(initial + self.injected - self.energies().mechanical() - self.losses.total())
+        Some(initial + self.injected + self.movers.work - self.energies().mechanical() - self.losses.total())
     }
 
     /// Visits all contacts that overlap, in a fixed order.

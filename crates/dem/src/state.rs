@@ -9,7 +9,7 @@ use granular_core::{Dim, Linear, Section, SnapshotError};
 impl<D: Dim> Dem<D> {
     pub(crate) fn save_state(&self, to: &mut Section) {
         self.grains.save(to);
-        self.pairs.save(&self.grains, to);
+        self.pairs.save(&self.grains, &self.walls, to);
         to.put_one("steps", self.steps);
         to.put_one("last step taken", self.last_dt);
         to.put("gravity", &[self.gravity]);
@@ -20,6 +20,10 @@ impl<D: Dim> Dem<D> {
         let friction: Vec<f64> =
             (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
         to.put("friction", &friction);
+        if !self.movers.is_empty() {
+            self.clock.save(to);
+            self.movers.save(to);
+        }
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -31,7 +35,7 @@ impl<D: Dim> Dem<D> {
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
         self.take_materials(turning);
         self.grains.restore(from)?;
-        self.pairs.restore(from, &self.grains)?;
+        self.pairs.restore(from, &self.grains, &self.walls)?;
         self.steps = from.one("steps")?;
         self.last_dt = from.one("last step taken")?;
         self.gravity = from.array_of("gravity", 1)?[0];
@@ -47,6 +51,11 @@ impl<D: Dim> Dem<D> {
         check_finite("gravity", self.gravity.is_finite())?;
         check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
         check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
+        if !self.movers.is_empty() {
+            self.clock.restore(from)?;
+            self.movers.restore(from)?;
+            self.movers.place(self.clock.time());
+        }
         self.list(0.0, None);
         Ok(())
     }

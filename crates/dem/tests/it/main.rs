@@ -12,10 +12,12 @@ mod impact;
 mod incline;
 mod lists;
 mod memory;
+mod moving_walls;
 mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod surfaces;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
