@@ -51,6 +51,10 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     /// old index of each grain when grains were re-sorted.
     fn list(&mut self, view: &View<'_, D>, skin: f64, order: Option<&[u32]>);
     /// Writes the loads of all contacts to `force` and `torque`, except what [`Pairs::collect`] adds.
+    /// Memories move with grains that were put in or taken out: `place` tells where each is now.
+    fn regroup(&mut self, walls: &[Wall<D>], blocks: Blocks, place: &[u32]);
+    /// Another number of grains, whose memories will be restored.
+    fn resize(&mut self, blocks: Blocks);
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]);
     /// Adds what other blocks owe to the grains of `block`.
     fn collect(&self, block: usize, force: &mut [D::Vec], torque: &mut [D::Spin]);
@@ -160,8 +164,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let largest = view.radius.iter().fold(0.0, |a: f64, &b| a.max(b));
         self.grid.fill(view.position, 2.0 * largest + skin);
         if let Some(order) = order {
-            crate::lists::reorder(&mut self.lists, self.blocks, order, L::reversed);
-            facet_lists::reorder(&mut self.facets, view, self.blocks, order);
+            self.regroup(view.walls, self.blocks, &crate::lists::places(order));
         }
         let (grid, blocks) = (&self.grid, self.blocks);
         blocks.for_each(PerBlock(&mut self.lists), |block, list| {
@@ -179,6 +182,23 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             outgoing.resize(owed, Owed::default());
         }
         crate::lists::fill_inboxes(&self.lists, blocks, &mut self.inbox);
+    }
+
+    fn regroup(&mut self, walls: &[Wall<D>], blocks: Blocks, place: &[u32]) {
+        crate::lists::regroup(&mut self.lists, (self.blocks, blocks), place, L::reversed);
+        facet_lists::regroup(&mut self.facets, walls, blocks, place);
+        self.resize(blocks);
+    }
+
+    fn resize(&mut self, blocks: Blocks) {
+        let count = blocks.count();
+        self.blocks = blocks;
+        self.lists.resize_with(count, BlockList::default);
+        self.facets.resize_with(count, FacetList::default);
+        self.reactions.resize_with(count, Vec::new);
+        self.outgoing.resize_with(count, Vec::new);
+        self.inbox.resize_with(count, Vec::new);
+        self.results.resize(count, (Losses::default(), None));
     }
 
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]) {

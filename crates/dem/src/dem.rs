@@ -9,6 +9,7 @@ use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
 use crate::moving::{Movers, Reaction};
 use crate::setup::{LeverArm, Options, Setup, check_options};
+use crate::traffic::Traffic;
 use crate::wall::Wall;
 use crate::{lists, motion};
 use granular_core::solver::check_step;
@@ -34,6 +35,7 @@ pub struct Dem<D: Dim> {
     pub(crate) walls: Vec<Wall<D>>,
     pub(crate) movers: Movers<D>,
     pub(crate) clock: Clock,
+    pub(crate) traffic: Traffic<D>,
     pub(crate) gravity: D::Vec,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
@@ -100,6 +102,7 @@ impl<D: Dim> Dem<D> {
         let mut dem = Self {
             movers,
             clock: Clock::default(),
+            traffic: Traffic::new(list.len()),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
             speeds: vec![0; blocks.count()],
@@ -278,6 +281,25 @@ impl<D: Dim> Dem<D> {
         self.pairs.list(&view, self.reach, order);
     }
 
+    /// Reach of the lists for grains of this mean diameter \[m\].
+    pub(crate) fn use_skin_of(&mut self, diameter: f64) {
+        self.skin = self.options.skin * diameter;
+    }
+
+    /// Cuts another number of grains into blocks.
+    pub(crate) fn cut(&mut self) -> Blocks {
+        self.blocks = Blocks::about(self.len(), BLOCKS, SMALLEST_BLOCK);
+        self.speeds.resize(self.blocks.count(), 0);
+        self.blocks
+    }
+
+    /// Takes up that grains were put in or taken out; `place` tells where each is now.
+    pub(crate) fn regroup(&mut self, place: &[u32]) {
+        let blocks = self.cut();
+        self.pairs.regroup(&self.walls, blocks, place);
+        self.list(0.0, None);
+    }
+
     /// Sorts grains in memory when the count of steps says so.
     fn sort_if_due(&mut self) {
         if self.sorts_after(0) {
@@ -438,9 +460,10 @@ impl<D: Dim> Solver for Dem<D> {
         for remaining in (0..steps).rev() {
             if !opened {
                 self.sort_if_due();
+                self.exchange_if_due();
                 motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
             }
-            opened = remaining > 0 && !self.sorts_after(1);
+            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
             self.load_and_kick(dt, opened)?;
         }
         self.movers.place(self.clock.time());

@@ -362,25 +362,24 @@ pub(crate) fn needed<D: Dim>(walls: &[Wall<D>]) -> bool {
     walls.iter().any(|wall| matches!(wall.shape, Shape::Facets(_)))
 }
 
-/// Moves memories to the blocks that own them after grains were re-sorted.
-pub(crate) fn reorder<D: Dim, M: Copy + Default + PartialEq>(
-    lists: &mut [FacetList<D, M>],
-    view: &View<'_, D>,
-    blocks: Blocks,
-    order: &[u32],
+/// Moves memories to the blocks that own them, see [`crate::lists::regroup`].
+pub(crate) fn regroup<D: Dim, M: Copy + Default + PartialEq>(
+    lists: &mut Vec<FacetList<D, M>>,
+    walls: &[Wall<D>],
+    now: Blocks,
+    place: &[u32],
 ) {
-    if !needed(view.walls) {
-        return;
-    }
-    let place = crate::lists::places(order);
     let mut all = Vec::new();
     for list in lists.iter_mut() {
-        list.harvest(view.walls);
+        list.harvest(walls);
         all.append(&mut list.live);
     }
+    lists.resize_with(now.count(), FacetList::default);
     for (grain, wall, part, slot) in all {
         let grain = place[grain as usize];
-        lists[grain as usize / blocks.size()].live.push((grain, wall, part, slot));
+        if grain != u32::MAX {
+            lists[grain as usize / now.size()].live.push((grain, wall, part, slot));
+        }
     }
 }
 

@@ -53,6 +53,7 @@ mod show;
 #[cfg(feature = "serde")]
 pub mod spec;
 mod state;
+mod traffic;
 pub mod wall;
 
 pub use contacts::{Contact, Partner};
@@ -67,6 +68,7 @@ pub use moving::WallMotion;
 pub use servo::Servo;
 pub use setup::{LeverArm, Options, Setup};
 pub use show::Energies;
+pub use traffic::{Exchanged, Inlet, Outlet};
 pub use wall::{Shape, Wall};
 
 /// Disks in the plane, per metre of depth.

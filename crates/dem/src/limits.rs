@@ -80,6 +80,12 @@ impl<D: Dim> Dem<D> {
             let place = &mut lightest[self.grains.material_of(index)];
             *place = place.min(self.grains.mass[index]);
         }
+        for inlet in self.traffic.inlets() {
+            let density = self.materials.get(inlet.material).density;
+            let place = &mut lightest[inlet.material.0 as usize];
+            let masses = inlet.radii.iter().map(|&radius| density * D::ball_volume(radius));
+            *place = masses.fold(*place, f64::min);
+        }
         let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
         let mut pairs = Vec::new();
         for (a, b, properties) in self.materials.pairs() {
@@ -136,8 +142,10 @@ impl<D: Dim> Dem<D> {
         let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
         let gravity = self.gravity.length();
         let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        let fastest = speed.max(fall) + self.movers.fastest_ever();
-        let (smallest, _) = self.grains.radius_range();
+        let coming = self.traffic.inlets().map(|inlet| inlet.velocity.length()).fold(0.0, f64::max);
+        let fastest = speed.max(fall).max(coming) + self.movers.fastest_ever();
+        let of_inlets = self.traffic.inlets().flat_map(|inlet| inlet.radii.iter().copied());
+        let smallest = of_inlets.fold(self.grains.radius_range().0, f64::min);
         let depth =
             |pair: &Stiffest| fastest * (pair.effective_mass / pair.properties.normal_stiffness).sqrt();
         let deepest = pairs.iter().map(depth).fold(0.0, f64::max);
@@ -154,7 +162,12 @@ impl<D: Dim> Dem<D> {
     fn extent_along_gravity(&self) -> f64 {
         let direction = self.gravity * (1.0 / self.gravity.length());
         let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
-        let lowest = -self.blocks.largest(|i| self.grains.position[i].dot(direction));
+        let deepest = self.blocks.largest(|i| self.grains.position[i].dot(direction));
+        // Grains that come in fall as far as those that are there.
+        let corners = self.traffic.inlets().flat_map(|inlet| [inlet.low, inlet.high]);
+        let heights = corners.map(|corner| -corner.dot(direction));
+        let (highest, lowest) =
+            heights.fold((highest, -deepest), |(high, low), height| (high.max(height), low.min(height)));
         (highest - lowest).max(0.0)
     }
 

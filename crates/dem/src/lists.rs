@@ -155,29 +155,34 @@ pub(crate) fn places(order: &[u32]) -> Vec<u32> {
     place
 }
 
-/// Moves memories to the blocks that own them after grains were re-sorted.
-pub(crate) fn reorder<M: Copy + Default + PartialEq>(
-    lists: &mut [BlockList<M>],
-    blocks: Blocks,
-    order: &[u32],
+/// Moves memories to the blocks that own them after grains were re-sorted, put in or taken out: `place` tells
+/// where each grain is now, [`u32::MAX`] for one that went.
+pub(crate) fn regroup<M: Copy + Default + PartialEq>(
+    lists: &mut Vec<BlockList<M>>,
+    (before, now): (Blocks, Blocks),
+    place: &[u32],
     reversed: impl Fn(M) -> M,
 ) {
-    let place = places(order);
     let mut pairs = Vec::new();
     let mut walls = Vec::new();
     for (block, list) in lists.iter_mut().enumerate() {
-        list.harvest(blocks.range(block).start);
+        list.harvest(before.range(block).start);
         pairs.append(&mut list.live);
         walls.append(&mut list.live_walls);
     }
+    lists.resize_with(now.count(), BlockList::default);
     for (first, second, memory) in pairs {
         let (a, b) = (place[first as usize], place[second as usize]);
-        let moved = if a > b { (a, b, memory) } else { (b, a, reversed(memory)) };
-        lists[moved.0 as usize / blocks.size()].live.push(moved);
+        if a != u32::MAX && b != u32::MAX {
+            let moved = if a > b { (a, b, memory) } else { (b, a, reversed(memory)) };
+            lists[moved.0 as usize / now.size()].live.push(moved);
+        }
     }
     for (near, memory) in walls {
         let grain = place[near.grain as usize];
-        lists[grain as usize / blocks.size()].live_walls.push((NearWall { grain, ..near }, memory));
+        if grain != u32::MAX {
+            lists[grain as usize / now.size()].live_walls.push((NearWall { grain, ..near }, memory));
+        }
     }
 }
 

@@ -198,6 +198,10 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("unconnected", "1", "grains that do not belong to the main mass"),
 ];
 
+/// Shown when walls move.
+const WALL_WORK: (&str, &str, &str) =
+    ("wall_work", "J", "work of moving walls on grains; with the ledger only");
+
 const FIELDS: &[(&str, &str, &str)] = &[
     ("radius", "m", "radius"),
     ("velocity", "m/s", "velocity"),
@@ -233,6 +237,10 @@ impl<D: Dim> Dem<D> {
                 list.push(Shown { name, unit: "N", meaning: "force on the wall", kind: ShownAs::Number });
             }
         }
+        if !self.movers.is_empty() {
+            list.push(shown(ShownAs::Number)(&WALL_WORK));
+        }
+        list.extend(self.traffic_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
         list
@@ -241,6 +249,14 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn show_all(&self, sink: &mut dyn FieldSink) {
         self.show_numbers(sink);
         self.show_wall_forces(sink);
+        for ((name, unit, _), value) in
+            self.traffic_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
+        {
+            sink.number(name, unit, value);
+        }
+        if !self.movers.is_empty() && sink.wants(WALL_WORK.0) {
+            sink.number(WALL_WORK.0, WALL_WORK.1, self.wall_work());
+        }
         self.show_fields(sink);
         self.show_links(sink);
     }

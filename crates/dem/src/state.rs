@@ -20,10 +20,16 @@ impl<D: Dim> Dem<D> {
         let friction: Vec<f64> =
             (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
         to.put("friction", &friction);
-        if !self.movers.is_empty() {
+        if self.keeps_time() {
             self.clock.save(to);
-            self.movers.save(to);
         }
+        self.movers.save(to);
+        self.traffic.save(to);
+    }
+
+    /// Whether anything depends on the time.
+    fn keeps_time(&self) -> bool {
+        !self.movers.is_empty() || !self.traffic.is_empty()
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -34,7 +40,10 @@ impl<D: Dim> Dem<D> {
         // Not asked of the friction: grains go on turning after it was taken away.
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
         self.take_materials(turning);
-        self.grains.restore(from)?;
+        let (turns, any_number) = (self.pairs.tangential(), !self.traffic.is_empty());
+        self.grains.restore(from, turns, any_number)?;
+        let blocks = self.cut();
+        self.pairs.resize(blocks);
         self.pairs.restore(from, &self.grains, &self.walls)?;
         self.steps = from.one("steps")?;
         self.last_dt = from.one("last step taken")?;
@@ -51,11 +60,12 @@ impl<D: Dim> Dem<D> {
         check_finite("gravity", self.gravity.is_finite())?;
         check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
         check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
-        if !self.movers.is_empty() {
+        if self.keeps_time() {
             self.clock.restore(from)?;
-            self.movers.restore(from)?;
-            self.movers.place(self.clock.time());
         }
+        self.movers.restore(from)?;
+        self.movers.place(self.clock.time());
+        self.traffic.restore(from)?;
         self.list(0.0, None);
         Ok(())
     }

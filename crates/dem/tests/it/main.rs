@@ -18,6 +18,7 @@ mod restart;
 mod sample;
 mod stability;
 mod surfaces;
+mod traffic;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
