@@ -10,7 +10,7 @@ use crate::material::{MaterialId, Materials, SetupError};
 use crate::moving::{Movers, Reaction};
 use crate::setup::{LeverArm, Options, Setup, check_options};
 use crate::traffic::Traffic;
-use crate::wall::Wall;
+use crate::wall::{Shape, Wall};
 use crate::{lists, motion};
 use granular_core::solver::check_step;
 use granular_core::{
@@ -215,6 +215,19 @@ impl<D: Dim> Dem<D> {
     /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
     pub fn wall_work(&self) -> f64 {
         self.movers.work
+    }
+
+    /// Where a wall is \[m\]: the point with which a plane was given, moved along with it; for other walls how far they
+    /// were shifted. Turning does not count.
+    ///
+    /// # Panics
+    /// When there is no wall of this index.
+    pub fn wall_position(&self, wall: usize) -> D::Vec {
+        let shift = self.movers.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
+        match self.walls[wall].shape {
+            Shape::Plane { point, .. } => point + shift,
+            _ => shift,
+        }
     }
 
     /// Simulated time since the start \[s\].

@@ -3,7 +3,7 @@
 use crate::facets::Facets;
 use crate::material::{MaterialId, SetupError};
 use crate::moving::WallMotion;
-use granular_core::{D3, Dim, Linear, Vector};
+use granular_core::{Dim, Linear, Vector};
 use std::sync::Arc;
 
 /// The surface of a wall.
@@ -140,6 +140,20 @@ impl<D: Dim> Wall<D> {
         Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
     }
 
+    /// A mesh of triangles, three corners \[m\] each, touched from both sides, at its faces, edges and corners. It
+    /// need not be closed and its triangles need not share corners. (In the plane a triangle is a filled one.)
+    ///
+    /// # Errors
+    /// When there is no triangle, corners are left over, one is not finite, or those of a triangle coincide.
+    pub fn triangles(name: &str, corners: Vec<D::Vec>, material: MaterialId) -> Result<Self, SetupError> {
+        if !corners.len().is_multiple_of(3) {
+            let what = format!("number of corners of wall `{name}`");
+            return Err(SetupError::new(what, corners.len() as f64, "three for each triangle"));
+        }
+        let facets = Facets::new(name, corners, 3)?;
+        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    }
+
     /// A wall of grains that are held: centre \[m\] and radius \[m\] of each. They are not integrated; like any
     /// wall they may move all together.
     ///
@@ -161,22 +175,6 @@ impl<D: Dim> Wall<D> {
 
     fn of(name: &str, shape: Shape<D>, material: MaterialId) -> Self {
         Self { name: name.to_owned(), shape, material, open: false, motion: None, held: false }
-    }
-}
-
-impl Wall<D3> {
-    /// A mesh of triangles \[m\], touched from both sides, at its faces, edges and corners. It need not be closed
-    /// and its triangles need not share corners.
-    ///
-    /// # Errors
-    /// When there is no triangle, a corner is not finite, or the corners of a triangle coincide.
-    pub fn mesh(
-        name: &str,
-        triangles: &[[<D3 as Dim>::Vec; 3]],
-        material: MaterialId,
-    ) -> Result<Self, SetupError> {
-        let facets = Facets::new(name, triangles.as_flattened().to_vec(), 3)?;
-        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
     }
 }
 

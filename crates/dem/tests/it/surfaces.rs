@@ -36,7 +36,7 @@ fn tiles(glass: MaterialId) -> Wall<D3> {
             [[at(0, 0), at(1, 0), at(1, 1)], [at(0, 0), at(0, 1), at(1, 1)]]
         })
         .collect();
-    Wall::mesh("floor", &triangles, glass).unwrap()
+    Wall::triangles("floor", triangles.into_flattened(), glass).unwrap()
 }
 
 /// A ball that falls on a floor with speed and spin, bounces, slides and rolls.
