@@ -143,7 +143,7 @@ impl<D: Dim> Dem<D> {
 
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
-        !self.grains.spin.is_empty()
+        self.pairs.tangential()
     }
 
     /// The grain of a stable identifier, as it is now. Searches: for a few grains.

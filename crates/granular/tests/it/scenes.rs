@@ -15,7 +15,7 @@ const SHORTENED: &[(&str, &[&str])] = &[
             "stages.0.end=For(\"0.03 s\")",
             "stages.1.end=For(\"0.03 s\")",
             "stages.2.end=For(\"0.03 s\")",
-            "figures.1.times=[\"0 s\"]",
+            "figures.1.times=[0]",
         ],
     ),
     ("ch5_cavity", &["solvers.fluid.spacing=50 mm", "stages.0.end=For(\"12 s\")"]),
