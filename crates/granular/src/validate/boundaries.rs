@@ -21,40 +21,57 @@ pub(super) fn wall_forces(rows: &mut Rows, effort: Effort) -> Result<(), Failure
 }
 
 fn pressed<D: Dim>(rows: &mut Rows, side: usize) -> Result<(), StepError> {
-    let spacing = 1.05e-3;
+    let spacing = 1e-3;
     let far = spacing * side as f64;
     let mut materials = Materials::new();
     // A contact lasts as long in space as in the plane, so that as much happens in as many steps.
     let one = Material::default().density * D::ball_volume(0.46e-3);
     let normal_stiffness = one * 3e4_f64.powi(2);
-    let material = Material { restitution: 0.1, friction: 0.3, normal_stiffness, ..Material::default() };
+    let material = Material { restitution: 0.5, friction: 0.3, normal_stiffness, ..Material::default() };
     let glass = materials.add(material).expect(FITS);
+    // Friction at the walls would add shear to the stress of the box.
+    let smooth = materials.add(Material { friction: 0.0, ..material }).expect(FITS);
     let mut chance = Chance::new(3);
     let grain = |index: usize, chance: &mut Chance| {
         let place = (0..D::N).fold(D::Vec::ZERO, |place, axis| {
             let row = index / side.pow(axis as u32) % side;
             place + D::Vec::along(axis, spacing * (row as f64 + 0.5))
         });
-        Grain::at(place, chance.between(0.40e-3, 0.52e-3), glass)
+        Grain::at(place, chance.between(0.42e-3, 0.5e-3), glass)
     };
     let grains: Vec<Grain<D>> = (0..side.pow(D::N as u32)).map(|index| grain(index, &mut chance)).collect();
     let mass = grains.len() as f64 * one;
     let mut walls = Vec::new();
     for axis in 0..D::N {
         let along = D::Vec::along(axis, 1.0);
-        walls.push(Wall::plane(&format!("{axis}low"), D::Vec::ZERO, along, glass).expect(FITS));
+        walls.push(Wall::plane(&format!("{axis}low"), D::Vec::ZERO, along, smooth).expect(FITS));
         // Other pressures along other axes.
         let force = (1.0 + axis as f64) * 0.05 * side.pow(D::N as u32 - 1) as f64;
         let servo = Servo { direction: -along, force, mass, damping: (mass * 1e6).sqrt(), max_speed: 1.0 };
-        let lid = Wall::plane(&format!("{axis}high"), along * far, -along, glass).expect(FITS);
+        let lid = Wall::plane(&format!("{axis}high"), along * far, -along, smooth).expect(FITS);
         walls.push(lid.moving(WallMotion::Servo(servo)));
     }
     let options = Options::default();
     let mut dem = Dem::new(Setup { materials, grains, walls, gravity: D::Vec::ZERO, options }).expect(FITS);
     let dt = dem.recommended_step();
-    dem.advance(dt, 60_000)?;
+    // At rest when opposite walls feel the same.
+    let mut rounds = 0;
+    while rounds < 100 && unbalanced(&dem) > 1e-7 {
+        dem.advance(dt, 2000)?;
+        rounds += 1;
+    }
     compare(rows, &dem);
     Ok(())
+}
+
+/// Largest sum of forces on opposite walls over the force on one.
+fn unbalanced<D: Dim>(dem: &Dem<D>) -> f64 {
+    let forces = dem.wall_forces();
+    let of_axis = |axis: usize| {
+        let [low, high] = [0, 1].map(|side| forces[2 * axis + side].component(axis));
+        if high == 0.0 { f64::INFINITY } else { (low + high).abs() / high }
+    };
+    (0..D::N).map(of_axis).fold(0.0, f64::max)
 }
 
 /// Rows of diagonal stresses. Wall `2 a` is at zero on axis `a`, wall `2 a + 1` opposite.
@@ -80,9 +97,8 @@ fn compare<D: Dim>(rows: &mut Rows, dem: &Dem<D>) {
         let measure = Measure::relative(Tier::Identity, name, sums[axis] / volume, of_walls, 1e-4);
         rows.add(measure.note("against the force on the wall over its area"));
     }
-    let unbalanced = (forces[1].component(0) + forces[0].component(0)).abs() / forces[1].component(0);
     let name = format!("{}s: sum of forces on opposite walls over one", D::BALL);
-    rows.add(Measure::absolute(Tier::Conservation, name, unbalanced, 0.0, 1e-4));
+    rows.add(Measure::absolute(Tier::Conservation, name, unbalanced(dem), 0.0, 1e-4));
 }
 
 /// Closed forms of moving walls, and the energy they put in.
