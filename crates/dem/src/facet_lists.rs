@@ -352,7 +352,8 @@ pub(crate) fn visit<D: Dim, L: ContactLaw<D>>(
             };
             let (first, wall) = (entry.grain as usize, entry.wall as usize);
             let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-            visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Wall(wall)));
+            let branch = meeting.normal * (view.radius[first] - meeting.overlap);
+            visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
         }
     }
 }

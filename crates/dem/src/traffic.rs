@@ -208,6 +208,7 @@ impl<D: Dim> Dem<D> {
     /// When a value is out of range, or the largest grain does not fit into the box.
     pub fn add_inlet(&mut self, inlet: Inlet<D>) -> Result<(), SetupError> {
         self.check_inlet(&inlet)?;
+        self.refuse_cell()?;
         let Inlet { radii, material, runs, .. } = &inlet;
         if self.is_empty() {
             self.use_skin_of(2.0 * radii.iter().sum::<f64>() / radii.len() as f64);
@@ -236,8 +237,17 @@ impl<D: Dim> Dem<D> {
                 "finite, with a direction or extent",
             ));
         }
+        self.refuse_cell()?;
         self.traffic.outlets.push(outlet);
         Ok(())
+    }
+
+    /// A periodic cell holds as many grains as it began with.
+    fn refuse_cell(&self) -> Result<(), SetupError> {
+        match self.cell() {
+            Some(_) => Err(SetupError::new("periodic cells where grains come and go", 1.0, "none")),
+            None => Ok(()),
+        }
     }
 
     /// Starts or stops an inlet. Returns whether there is one of this name.
