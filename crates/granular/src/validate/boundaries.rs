@@ -15,7 +15,7 @@ const GRAVITY: f64 = 9.81;
 
 /// Stress of contacts, the sum of `branch (x) force` over the volume \[Love1927\], against forces on walls over areas.
 pub(super) fn wall_forces(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
-    let sides = if effort == Effort::Full { (32, 12) } else { (12, 6) };
+    let sides = if effort == Effort::Full { (24, 10) } else { (10, 5) };
     pressed::<D2>(rows, sides.0)?;
     Ok(pressed::<D3>(rows, sides.1)?)
 }
@@ -46,8 +46,9 @@ fn pressed<D: Dim>(rows: &mut Rows, side: usize) -> Result<(), StepError> {
         let along = D::Vec::along(axis, 1.0);
         walls.push(Wall::plane(&format!("{axis}low"), D::Vec::ZERO, along, smooth).expect(FITS));
         // Other pressures along other axes.
-        let force = (1.0 + axis as f64) * 0.05 * side.pow(D::N as u32 - 1) as f64;
-        let servo = Servo { direction: -along, force, mass, damping: (mass * 1e6).sqrt(), max_speed: 1.0 };
+        let area = side.pow(D::N as u32 - 1) as f64;
+        let force = (1.0 + axis as f64) * 1e-7 * normal_stiffness * area;
+        let servo = Servo { direction: -along, force, mass, damping: force / 0.1, max_speed: 1.0 };
         let lid = Wall::plane(&format!("{axis}high"), along * far, -along, smooth).expect(FITS);
         walls.push(lid.moving(WallMotion::Servo(servo)));
     }
@@ -56,7 +57,7 @@ fn pressed<D: Dim>(rows: &mut Rows, side: usize) -> Result<(), StepError> {
     let dt = dem.recommended_step();
     // At rest when opposite walls feel the same.
     let mut rounds = 0;
-    while rounds < 100 && unbalanced(&dem) > 1e-7 {
+    while rounds < 120 && unbalanced(&dem) > 1e-5 {
         dem.advance(dt, 2000)?;
         rounds += 1;
     }
