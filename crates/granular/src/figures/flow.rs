@@ -111,7 +111,7 @@ fn add_walls(scene: &Scene, panels: &mut [GrainPanel]) {
         match wall {
             WallSpec::Floor { .. } => lines.push([[0.0, 0.0], [1.02 * right, 0.0]]),
             WallSpec::Left { .. } => lines.push([[0.0, 0.0], [0.0, 1.05 * top]]),
-            WallSpec::Segment { from, to, .. } => lines.push([point(from), point(to)]),
+            WallSpec::Segment { from, to, opens: None, .. } => lines.push([point(from), point(to)]),
             WallSpec::Chain { points, closed, .. } => {
                 let closing = points.last().zip(points.first()).filter(|_| *closed);
                 let pairs = points.windows(2).map(|pair| (&pair[0], &pair[1])).chain(closing);
