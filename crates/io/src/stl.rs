@@ -106,7 +106,7 @@ mod tests {
         binary.extend([0, 0]);
         assert_eq!(read("binary", &binary).unwrap(), expected);
         binary.pop();
-        assert!(read("short", &binary).unwrap_err().to_string().contains("endsolid"));
+        assert!(read("short", &binary).unwrap_err().to_string().contains("the length it says"));
     }
 
     #[test]
