@@ -13,6 +13,8 @@ const LEAST_OVERLAP: f64 = 1e-4;
 /// The stiffest meeting that a scene allows between two materials.
 pub(super) struct Stiffest {
     pub(super) oscillator: Oscillator,
+    /// Stiffness along the normal \[N/m\].
+    pub(super) stiffness: f64,
     /// Shortest contact time \[s\].
     pub(super) contact_time: f64,
     /// Shorter Rayleigh time of two spheres in Hertz contact \[s\]; else infinite.
@@ -101,6 +103,16 @@ impl<D: Dim> Dem<D> {
                 *place = (self.grains.mass[index], self.grains.radius[index]);
             }
         }
+        for inlet in self.traffic.inlets() {
+            let density = self.materials.get(inlet.material).density;
+            let place = &mut lightest[inlet.material.0 as usize];
+            for &radius in &inlet.radii {
+                let mass = density * D::ball_volume(radius);
+                if mass < place.0 {
+                    *place = (mass, radius);
+                }
+            }
+        }
         let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
         let (present_speed, fall) = self.fastest_speeds();
         let stack = self.extent_along_gravity();
@@ -151,6 +163,7 @@ impl<D: Dim> Dem<D> {
         let (properties, tension) = (&couple.properties, self.options.tension);
         Stiffest {
             oscillator: Oscillator::linear(properties, couple.effective_mass, tension),
+            stiffness: properties.normal_stiffness,
             contact_time: properties.contact_time(couple.effective_mass, tension),
             rayleigh_time: f64::INFINITY,
             speed,
@@ -168,7 +181,7 @@ impl<D: Dim> Dem<D> {
         let radius = couple.effective_radius;
         let impact = properties.hertz_impact(radius, couple.effective_mass, speed);
         let deepest = impact.largest_overlap();
-        let grains = 1.0 + reach.0 / self.grains.radius_range().0;
+        let grains = 1.0 + reach.0 / self.smallest_radius();
         let weight = couple.mass * self.gravity.length() * grains;
         let pressed = (0.75 * weight / (properties.effective_modulus * radius.sqrt())).powf(2.0 / 3.0);
         let resting = pressed.max(reach.1).max(LEAST_OVERLAP * radius);
@@ -176,6 +189,7 @@ impl<D: Dim> Dem<D> {
         let overlap = deepest.max(resting);
         Stiffest {
             oscillator: Oscillator::hertz(couple, overlap, tension),
+            stiffness: Oscillator::hertz(couple, overlap, tension).normal * couple.effective_mass,
             contact_time: impact.duration(properties.zeta(tension), tension).min(half_period),
             rayleigh_time: if D::TWISTS { self.rayleigh_time() } else { f64::INFINITY },
             speed,
@@ -192,7 +206,13 @@ impl<D: Dim> Dem<D> {
             let elasticity = material.elasticity?;
             Some(elasticity.rayleigh_time(self.grains.radius[index], material.density))
         };
-        (0..self.len()).filter_map(time).fold(f64::INFINITY, f64::min)
+        let of_inlets = self.traffic.inlets().flat_map(|inlet| {
+            let material = self.materials.get(inlet.material);
+            let times =
+                move |&radius: &f64| Some(material.elasticity?.rayleigh_time(radius, material.density));
+            inlet.radii.iter().filter_map(times)
+        });
+        (0..self.len()).filter_map(time).chain(of_inlets).fold(f64::INFINITY, f64::min)
     }
 }
 
