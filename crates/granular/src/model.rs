@@ -1,5 +1,6 @@
 //! From a scene to a simulation: all checks that need no step, then the build by the method of the scene.
 
+mod cell;
 mod fluid;
 mod grains;
 mod outputs;
@@ -52,6 +53,8 @@ pub enum Action {
     StopMotion,
     /// A wall opens or closes.
     Wall(String, bool),
+    /// What drives the periodic cell.
+    Cell(granular_dem::CellControl),
 }
 
 /// Collects problems by scene path.

@@ -79,6 +79,7 @@ pub(super) fn build<D: Dim>(
         _ => column.map_or(Beside::Nothing, Beside::Column),
     };
     let walls = walls::walls::<D>(&scene.walls, beside, &materials, &mut problems);
+    let cell = super::cell::cell::<D>(scene, sample.as_ref(), &mut problems);
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, walls.list.iter().map(|wall| wall.name.as_str()).collect(), &mut problems);
     check_spec(name, spec, &mut problems);
@@ -92,9 +93,13 @@ pub(super) fn build<D: Dim>(
         gravity,
         options: spec.options(needs_ledger(scene)),
     };
-    let dem = Dem::<D>::new(setup).map_err(|error| {
+    let mut dem = Dem::<D>::new(setup).map_err(|error| {
         vec![SceneProblem::at_path(format!("solvers.{name}"), error.to_string(), error.allowed, "")]
     })?;
+    if let Some(cell) = cell {
+        dem.set_cell(cell)
+            .map_err(|error| vec![SceneProblem::at_path("cell", error.to_string(), error.allowed, "")])?;
+    }
     outputs::check_names(scene, &dem, &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
@@ -145,7 +150,9 @@ fn check_spec(name: &str, spec: &DemSpec, problems: &mut Problems) {
 
 /// Whether anything asks for losses of energy.
 fn needs_ledger(scene: &Scene) -> bool {
-    let asks = |probes: &[String]| probes.iter().any(|p| p.starts_with("loss_") || p == "energy_residual");
+    let asks = |probes: &[String]| {
+        probes.iter().any(|p| p.starts_with("loss_") || p == "energy_residual" || p == "cell_work")
+    };
     let in_tables = scene.outputs.iter().any(|output| match &output.write {
         Writer::Table { probes, .. } => asks(probes),
         _ => false,
@@ -178,7 +185,13 @@ fn actions<D: Dim>(
         let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
         for (c, change) in stage.changes.iter().enumerate() {
             let path = format!("stages.{k}.changes.{c}");
-            list.extend(action::<D>(&path, change, materials, problems));
+            list.extend(match change {
+                Change::Cell(change) => {
+                    let control = super::cell::control::<D>(&path, change, scene.cell.as_ref(), problems);
+                    control.map(Action::Cell)
+                }
+                change => action::<D>(&path, change, materials, problems),
+            });
         }
         stages.push(list);
     }
@@ -205,6 +218,7 @@ fn action<D: Dim>(
         Change::StopMotion => Action::StopMotion,
         Change::Open(name) => Action::Wall(name.clone(), true),
         Change::Close(name) => Action::Wall(name.clone(), false),
+        Change::Cell(_) => return None,
     })
 }
 
@@ -225,5 +239,6 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
         }
         Action::StopMotion => dem.stop_motion(),
         Action::Wall(name, open) => _ = dem.set_open(name, *open),
+        Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
     }
 }
