@@ -1,13 +1,14 @@
 //! The solver: set-up, the step, and changes between stages.
 
 use crate::cell::Cell;
+use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
 use crate::kernel::{Trouble, View};
-use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
+use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
-use crate::setup::{LeverArm, Options, Setup, check_options};
+use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::wall::Wall;
 use crate::{lists, motion};
 use granular_core::solver::check_step;
@@ -54,12 +55,13 @@ pub struct Dem<D: Dim> {
 }
 
 impl<D: Dim> Dem<D> {
-    /// A simulation with the linear law that the materials need: without friction no grain
+    /// A simulation with the law that the options and materials need: without friction no grain
     /// turns and no contact remembers anything, and neither takes memory.
     ///
     /// # Errors
     /// When a value is out of range.
     pub fn new(setup: Setup<D>) -> Result<Self, SetupError> {
+        check_stiffness(&setup.materials, setup.options.contact)?;
         let law = |materials: &Materials, options: &Options, blocks| {
             choose_law::<D>(materials, options, blocks, needs_rotation(materials))
         };
@@ -342,26 +344,6 @@ pub(crate) fn view_of<'a, D: Dim>(
         last_dt,
         margin: 0.0,
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
-    }
-}
-
-fn needs_rotation(materials: &Materials) -> bool {
-    materials.pairs().any(|(.., pair)| pair.friction > 0.0 || pair.rolling_friction > 0.0)
-}
-
-fn choose_law<D: Dim>(
-    materials: &Materials,
-    options: &Options,
-    blocks: Blocks,
-    turning: bool,
-) -> Box<dyn Pairs<D>> {
-    let tension = options.tension;
-    if materials.pairs().any(|(.., pair)| pair.rolling_friction > 0.0) {
-        Box::new(Contacts::<D, LinearRolling>::new(materials, tension, blocks))
-    } else if turning {
-        Box::new(Contacts::<D, LinearFrictional>::new(materials, tension, blocks))
-    } else {
-        Box::new(Contacts::<D, LinearNormal>::new(materials, tension, blocks))
     }
 }
 

@@ -236,6 +236,8 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         start_slip: D::Spin::ZERO,
         start_roll: D::Spin::ZERO,
         twist: 0.0,
+        twisting: 0.0,
+        start_twisting: 0.0,
         effective_mass: 0.0,
         effective_radius: 0.0,
         dt: view.dt,
@@ -252,6 +254,10 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         let surface = D::tangential(spin * own_arm + other.start_spin * other.arm, normal);
         meeting.start_slip = D::cross(normal, relative) - surface;
         meeting.start_roll = D::tangential(spin - other.start_spin, normal);
+        if L::TWISTING {
+            meeting.twisting = D::twist(view.spin[first] - other.spin, normal);
+            meeting.start_twisting = D::twist(spin - other.start_spin, normal);
+        }
     }
     Some(meeting)
 }
@@ -293,9 +299,7 @@ pub(crate) fn meet_other<D: Dim, L: ContactLaw<D>>(
     let normal = arm * (1.0 / distance);
     let mut meeting = meeting::<D, L>(view, first, own_arm, normal, overlap, &other)?;
     meeting.effective_mass = mass * other_mass / (mass + other_mass);
-    if L::TANGENTIAL {
-        meeting.effective_radius = radius * other_radius / (radius + other_radius);
-    }
+    meeting.effective_radius = radius * other_radius / (radius + other_radius);
     Some((meeting, (own_arm, other.arm)))
 }
 

@@ -149,6 +149,18 @@ impl<D: Dim> Dem<D> {
         counts
     }
 
+    /// Force of all contacts on each grain \[N; N/m in the plane\], walls included.
+    pub fn contact_forces(&self) -> Vec<D::Vec> {
+        let mut forces = vec![D::Vec::ZERO; self.len()];
+        self.visit_contacts(&mut |contact| {
+            forces[contact.first] += contact.force;
+            if let Partner::Grain(second) = contact.partner {
+                forces[second] -= contact.force;
+            }
+        });
+        forces
+    }
+
     /// Stress of each grain \[Pa\], positive in compression: the sum of `arm (x) force` over its
     /// contacts, over its volume \[VOR-7\].
     pub fn grain_stress(&self) -> Vec<SymmetricTensor> {
@@ -194,7 +206,7 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("loss_sliding_at_walls", "J", "energy lost by sliding at walls"),
     ("loss_normal_damping", "J", "energy lost in normal dashpots"),
     ("loss_tangential_damping", "J", "energy lost in tangential dashpots"),
-    ("loss_rolling", "J", "energy lost by rolling resistance"),
+    ("loss_rolling", "J", "energy lost by rolling and twisting resistance"),
     ("energy_residual", "J", "what the energy ledger misses"),
     ("largest_overlap", "%", "largest overlap over the radius of the smaller grain"),
     ("contacts", "1", "number of contacts"),
@@ -211,6 +223,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     ("mass", "kg", "mass"),
     ("contact_count", "1", "contacts of the grain"),
     ("stress", "Pa", "stress of the grain, positive in compression"),
+    ("force", "N", "force of all contacts on the grain"),
 ];
 
 const LINKS: &[(&str, &str, &str)] = &[
@@ -332,6 +345,7 @@ impl<D: Dim> Dem<D> {
                 "id" => sink.field(name, unit, FieldRef::Index(&grains.id)),
                 "mass" => sink.field(name, unit, FieldRef::Scalar(&grains.mass)),
                 "contact_count" => sink.field(name, unit, FieldRef::Index(&self.coordination())),
+                "force" => sink.field(name, unit, D::vector_field(&self.contact_forces())),
                 "stress" => sink.field(name, unit, FieldRef::Tensor(&self.grain_stress())),
                 _ => {}
             }

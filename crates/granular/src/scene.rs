@@ -7,7 +7,7 @@ pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
 
-pub use outputs::{EverySpec, FigureSpec, Output, ReferenceCurve, Writer};
+pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;

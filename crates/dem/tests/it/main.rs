@@ -4,11 +4,13 @@
 #![allow(clippy::unwrap_used)]
 
 mod cell;
+mod coarse;
 mod conservation;
 mod contract;
 mod energy;
 mod extremes;
 mod frames;
+mod hertz;
 mod impact;
 mod incline;
 mod lists;
@@ -17,6 +19,7 @@ mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod twisting;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
