@@ -4,7 +4,7 @@ use super::images::Moved;
 use super::{Cell, CellControl, Matrix, Shift, motion};
 use crate::dem::{Dem, view_of};
 use crate::kernel::View;
-use crate::material::SetupError;
+use crate::material::{PairProperties, SetupError};
 use granular_core::{Dim, Linear, StepError, Vector};
 
 /// The narrowest cell over the reach of a pair: no grain may see an image of itself, and no image
@@ -75,10 +75,12 @@ impl<D: Dim> Dem<D> {
         Ok(())
     }
 
-    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\].
-    fn packing_modulus(&self) -> f64 {
-        let stiffest = self.materials.pairs().map(|(.., pair)| pair.normal_stiffness).fold(0.0, f64::max);
-        stiffest / self.mean_diameter().powi(D::N as i32 - 2)
+    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\]: the normal stiffness times the mean
+    /// diameter to the power of two less the dimension, or the effective modulus of Hertz contacts.
+    pub fn packing_modulus(&self) -> f64 {
+        let scale = self.mean_diameter().powi(D::N as i32 - 2);
+        let modulus = |pair: &PairProperties| (pair.normal_stiffness / scale).max(pair.effective_modulus);
+        self.materials.pairs().map(|(.., pair)| modulus(&pair)).fold(0.0, f64::max)
     }
 
     /// Period \[s\] with which the mean grain swings on one contact.
