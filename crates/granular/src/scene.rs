@@ -3,6 +3,7 @@
 //! These types are what a scene file may say. `docs/scene-reference.md` is generated from them.
 
 pub mod boundaries;
+pub mod cell;
 pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
@@ -10,6 +11,7 @@ pub mod outputs;
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
+use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, Length, Time};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec};
@@ -41,6 +43,9 @@ pub struct Scene {
     /// The fluid, described apart from the method.
     #[serde(default)]
     pub fluid: Option<FluidSpec>,
+    /// The periodic cell around the grains; none by default.
+    #[serde(default)]
+    pub cell: Option<CellSpec>,
     /// Walls of grains; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
@@ -108,6 +113,20 @@ pub enum Sample {
         material: String,
         /// How the grains are placed.
         packing: PackingSpec,
+        /// Random seed of sizes and places: the same seed gives the same sample.
+        #[serde(default = "default_seed")]
+        seed: u64,
+    },
+    /// Grains scattered in the periodic cell of the scene, which becomes a cube or square, to be compressed by a stage.
+    Cell {
+        /// Number of grains.
+        grains: usize,
+        /// Area or volume of the grains over that of the cell before anything moves; grains must not overlap.
+        solid_fraction: f64,
+        /// Sizes of the grains.
+        grading: GradingSpec,
+        /// Name of the material of the grains.
+        material: String,
         /// Random seed of sizes and places: the same seed gives the same sample.
         #[serde(default = "default_seed")]
         seed: u64,
@@ -405,4 +424,6 @@ pub enum Change {
     Start(String),
     /// The moving wall or the inlet of this name halts where it is.
     Halt(String),
+    /// What drives the periodic cell.
+    Cell(CellChange),
 }

@@ -4,7 +4,7 @@ use super::images::Moved;
 use super::{Cell, CellControl, Matrix, Shift, motion};
 use crate::dem::{Dem, view_of};
 use crate::kernel::View;
-use crate::material::SetupError;
+use crate::material::{PairProperties, SetupError};
 use granular_core::{Dim, Linear, StepError, Vector};
 
 /// The narrowest cell over the reach of a pair: no grain may see an image of itself, and no image
@@ -17,8 +17,6 @@ const DRIFT: f64 = 0.125;
 const TILT: f64 = 0.55;
 /// Edges by which a grain may be outside at the start.
 const FARTHEST: f64 = 100.0;
-/// Default response of the servo over the time that sound takes through the cell.
-const RESPONSE: f64 = 3.0;
 
 impl<D: Dim> Dem<D> {
     /// Puts the grains into a periodic cell, at rest. Grains outside are put back inside by whole edges.
@@ -56,13 +54,14 @@ impl<D: Dim> Dem<D> {
     }
 
     /// Changes what drives the cell, from the next step on. Where zero, the modulus is that of a packing,
-    /// the normal stiffness over the mean diameter to the power of the dimension less two, and
-    /// the response is three times what sound takes through the cell.
+    /// the normal stiffness times the mean diameter to the power of two less the dimension, and the response
+    /// is the period with which the mean grain swings on one contact. With these, grains in a gas are compressed
+    /// with an inertial number of about half the root of stress over modulus.
     ///
     /// # Errors
     /// When there is no cell, or a control does not fit it.
     pub fn control_cell(&mut self, mut control: CellControl) -> Result<(), SetupError> {
-        let (modulus, response) = (self.packing_modulus(), self.sound_time());
+        let (modulus, response) = (self.packing_modulus(), self.grain_period());
         let Some(cell) = self.cell.as_deref_mut() else {
             return Err(SetupError::new("periodic cells", 0.0, "one: control acts on it"));
         };
@@ -71,7 +70,7 @@ impl<D: Dim> Dem<D> {
             control.modulus = modulus;
         }
         if control.response == 0.0 {
-            control.response = RESPONSE * response;
+            control.response = response;
         }
         cell.control = control;
         cell.take_rates();
@@ -79,18 +78,19 @@ impl<D: Dim> Dem<D> {
         Ok(())
     }
 
-    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\].
-    fn packing_modulus(&self) -> f64 {
-        let stiffest = self.materials.pairs().map(|(.., pair)| pair.normal_stiffness).fold(0.0, f64::max);
-        stiffest / self.mean_diameter().powi(D::N as i32 - 2)
+    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\]: the normal stiffness times the mean
+    /// diameter to the power of two less the dimension, or the effective modulus of Hertz contacts.
+    pub fn packing_modulus(&self) -> f64 {
+        let scale = self.mean_diameter().powi(D::N as i32 - 2);
+        let modulus = |pair: &PairProperties| (pair.normal_stiffness / scale).max(pair.effective_modulus);
+        self.materials.pairs().map(|(.., pair)| modulus(&pair)).fold(0.0, f64::max)
     }
 
-    /// Time that sound takes through the cell \[s\]: one contact per diameter.
-    fn sound_time(&self) -> f64 {
-        let Some(volume) = self.cell().and_then(Cell::volume) else { return 0.0 };
+    /// Period \[s\] with which the mean grain swings on one contact.
+    fn grain_period(&self) -> f64 {
         let mass = self.grains.mass.iter().sum::<f64>() / self.len().max(1) as f64;
         let stiffness = self.packing_modulus() * self.mean_diameter().powi(D::N as i32 - 2);
-        volume.powf(1.0 / D::N as f64) / self.mean_diameter() * (mass / stiffness).sqrt()
+        std::f64::consts::TAU * (mass / stiffness).sqrt()
     }
 
     fn mean_diameter(&self) -> f64 {

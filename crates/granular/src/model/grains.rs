@@ -77,7 +77,9 @@ pub(super) fn build<D: Dim>(
     let sample = match &scene.sample {
         Some(sample) => sample::grains::<D>(sample, &materials, &mut problems),
         // Grains may all come in through inlets.
-        None if !scene.inlets.is_empty() => Some(sample::BuiltSample { grains: Vec::new(), column: None }),
+        None if !scene.inlets.is_empty() => {
+            Some(sample::BuiltSample { grains: Vec::new(), column: None, cell: None })
+        }
         None => {
             problems.add("sample", "missing", "the grains, such as a Column", "");
             None
@@ -99,6 +101,7 @@ pub(super) fn build<D: Dim>(
     let around = Surroundings { scene, materials: &materials, grains_mass };
     let walls = walls::walls::<D>(&scene.walls, beside, &around, &mut problems);
     let of_inlets = inlet_materials(scene, &materials, &mut problems);
+    let cell = super::cell::cell::<D>(scene, sample.as_ref(), &mut problems);
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, &walls.list, &mut problems);
     check_spec(name, spec, &mut problems);
@@ -116,6 +119,10 @@ pub(super) fn build<D: Dim>(
         vec![SceneProblem::at_path(format!("solvers.{name}"), error.to_string(), error.allowed, "")]
     })?;
     boundaries::traffic(scene, &mut dem, &of_inlets, &mut problems);
+    if let Some(cell) = cell {
+        dem.set_cell(cell)
+            .map_err(|error| vec![SceneProblem::at_path("cell", error.to_string(), error.allowed, "")])?;
+    }
     outputs::check_names(scene, &dem, &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
@@ -189,7 +196,7 @@ fn check_spec(name: &str, spec: &DemSpec, problems: &mut Problems) {
 fn needs_ledger(scene: &Scene) -> bool {
     let asks = |probes: &[String]| {
         probes.iter().any(|probe| {
-            let sums = ["energy_residual", "wall_work", "energy_exchanged"];
+            let sums = ["energy_residual", "wall_work", "energy_exchanged", "cell_work"];
             probe.starts_with("loss_") || sums.contains(&probe.as_str())
         })
     };
@@ -225,7 +232,13 @@ fn actions<D: Dim>(
         let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
         for (c, change) in stage.changes.iter().enumerate() {
             let path = format!("stages.{k}.changes.{c}");
-            list.extend(action::<D>(&path, change, materials, problems));
+            list.extend(match change {
+                Change::Cell(change) => {
+                    let control = super::cell::control::<D>(&path, change, scene.cell.as_ref(), problems);
+                    control.map(Action::Cell)
+                }
+                change => action::<D>(&path, change, materials, problems),
+            });
         }
         stages.push(list);
     }
@@ -254,6 +267,7 @@ fn action<D: Dim>(
         Change::Close(name) => Action::Wall(name.clone(), false),
         Change::Start(name) => Action::Moving(name.clone(), true),
         Change::Halt(name) => Action::Moving(name.clone(), false),
+        Change::Cell(_) => return None,
     })
 }
 
@@ -278,5 +292,6 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
             dem.set_moving(name, *runs);
             dem.set_inlet(name, *runs);
         }
+        Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
     }
 }
