@@ -1,0 +1,21 @@
+//! x
+mod beach;
+mod bounded;
+mod cells;
+mod circle;
+mod curve;
+mod diagram;
+mod domain;
+mod dyadic;
+mod error;
+mod pieces;
+mod predicates;
+mod queue;
+mod site;
+mod sweep;
+pub use cells::{Cells, Side};
+pub use curve::Curve;
+pub use diagram::{Diagram, Edge};
+pub use domain::Domain;
+pub use error::TessellationError;
+pub use sweep::Vertex;

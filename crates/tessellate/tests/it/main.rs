@@ -1,0 +1,6 @@
+//! Diagrams against their definition.
+
+mod diagrams;
+mod extreme;
+mod properties;
+mod support;
