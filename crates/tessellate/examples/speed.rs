@@ -3,7 +3,7 @@ use granular_core::glam::DVec2;
 use granular_tessellate::{Diagram, Domain};
 use std::time::Instant;
 fn main() {
-    for n in [1000usize, 10000, 100000, 1000000] {
+    for n in std::env::args().nth(1).map(|a| vec![a.parse::<usize>().unwrap()]).unwrap_or(vec![1000usize, 10000, 100000, 1000000]) {
         let mut s = 1u64;
         let mut unit = || {
             s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -13,7 +13,7 @@ fn main() {
         let p: Vec<DVec2> = (0..n).map(|_| DVec2::new(unit(), unit())).collect();
         let r: Vec<f64> = (0..n).map(|_| l * (0.2 + 0.3 * unit())).collect();
         let dom = Domain::rectangle(DVec2::ZERO, DVec2::ONE).unwrap();
-        for _ in 0..3 {
+        for _ in 0..10 {
             let t = Instant::now();
             let d = Diagram::new(&p, &r).unwrap();
             let a = t.elapsed().as_secs_f64();

@@ -12,7 +12,7 @@
 use crate::bounded::{Bounded, Ring};
 use crate::dyadic::{Dyadic, sign_with_root, sign_with_roots};
 use crate::predicates::separation;
-use crate::site::{Seen, Site, exact_difference};
+use crate::site::{Seen, Site, exact_difference, order};
 use granular_core::glam::DVec2;
 use std::cmp::Ordering;
 
@@ -168,11 +168,20 @@ impl Height {
 
 /// Which of two circles the sweep line leaves first.
 pub(crate) fn order_of_circles(first: [&Site; 3], second: [&Site; 3]) -> Ordering {
-    let (a, b) = (Height::new(first), Height::new(second));
+    // Rows of a lattice: the same circle elsewhere.
+    if order(first[1].low, second[1].low) == Ordering::Equal && congruent(first, second) {
+        return Ordering::Equal;
+    }
     let base = exact_difference(first[1].low, second[1].low);
+    let (a, b) = (Height::new(first), Height::new(second));
     let plain = base * a.d.clone() * b.d.clone() + a.p * b.d.clone() - b.p * a.d.clone();
     let terms = [&plain, &(a.q * b.d), &-(b.q * a.d), &Dyadic::default()];
     sign_with_roots(terms, &a.g, &b.g).cmp(&0)
+}
+
+/// Whether two triples of sites are certain to differ by a translation only.
+fn congruent(first: [&Site; 3], second: [&Site; 3]) -> bool {
+    [0, 2].into_iter().all(|k| first[k].step_from(first[1]) == second[k].step_from(second[1]))
 }
 
 /// Whether the sweep line leaves a circle before it meets a site, at the site, or after it.

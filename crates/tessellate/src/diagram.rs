@@ -58,12 +58,15 @@ impl Diagram {
         let largest = largest(positions, radii)?;
         // A power of two: no digit is lost, and products neither overflow nor underflow.
         let unit = if largest > 0.0 { 2f64.powi(largest.log2().ceil() as i32) } else { 1.0 };
-        let mut order: Vec<(Site, u32)> = (0..)
-            .zip(positions.iter().zip(radii))
-            .map(|(index, (&position, &radius))| (Site::new(position / unit, radius / unit), index))
-            .collect();
-        order.sort_unstable_by(|(a, i), (b, j)| a.order(b).then(i.cmp(j)));
-        let (sites, order): (Vec<Site>, Vec<u32>) = order.into_iter().unzip();
+        let site = |index: u32| Site::new(positions[index as usize] / unit, radii[index as usize] / unit);
+        // Rounded heights first: whole sites are compared only where those are equal.
+        let mut order: Vec<(f64, u32)> = (0..count as u32).map(|index| (site(index).low[0], index)).collect();
+        order.sort_unstable_by(|&(a, i), &(b, j)| {
+            let exactly = || site(i).order(&site(j)).then(i.cmp(&j));
+            a.partial_cmp(&b).filter(|order| order.is_ne()).unwrap_or_else(exactly)
+        });
+        let order: Vec<u32> = order.into_iter().map(|(_, index)| index).collect();
+        let sites: Vec<Site> = order.iter().map(|&index| site(index)).collect();
         let mut topology = sweep(&sites);
         for site in &mut topology.site {
             *site = order[*site as usize];

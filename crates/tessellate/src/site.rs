@@ -66,6 +66,13 @@ impl Site {
             .then_with(|| compare(other.radius, self.radius))
     }
 
+    /// Differences of all coordinates to another site, exactly, as sums of two numbers.
+    pub(crate) fn step_from(&self, other: &Self) -> [Exact; 5] {
+        let [low, high] = [(self.low, other.low), (self.high, other.high)]
+            .map(|(a, b)| [two_sum(a[0], -b[0]), two_sum(a[1], -b[1])]);
+        [two_sum(self.x, -other.x), low[0], low[1], high[0], high[1]]
+    }
+
     /// Whether both disks have the same lowest point.
     pub(crate) fn same_lowest_point(&self, other: &Self) -> bool {
         self.x == other.x && order(self.low, other.low) == Ordering::Equal
