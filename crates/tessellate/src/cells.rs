@@ -80,7 +80,7 @@ impl Side {
 }
 
 /// Crossings in an order in which each begins with the owner that the last one ends with, from `start` on; those that
-/// fit nowhere come last \[Hierholzer1873\].
+/// fit nowhere come last (the way of Hierholzer to an Euler trail).
 fn trail(crossings: &[u32], start: u32, owners: impl Fn(u32) -> [u32; 2]) -> Vec<u32> {
     let mut left = crossings.to_vec();
     let (mut open, mut done): (Vec<u32>, Vec<u32>) = (Vec::new(), Vec::new());

@@ -34,7 +34,7 @@ pub struct Edge {
 }
 
 /// Largest size of a coordinate or radius: its square is still a number.
-const LARGEST: f64 = 1e150;
+pub(crate) const LARGEST: f64 = 1e150;
 
 /// Largest number of sites: half-edges, six for each, are numbered with 32 bits.
 const MOST_SITES: usize = 500_000_000;
@@ -188,7 +188,7 @@ fn largest(positions: &[DVec2], radii: &[f64]) -> Result<f64, TessellationError>
     let mut largest = 0.0_f64;
     for (index, (position, &radius)) in positions.iter().zip(radii).enumerate() {
         for (what, value) in [("x", position.x), ("y", position.y), ("radius", radius)] {
-            if !(value.abs() <= LARGEST) {
+            if value.is_nan() || value.abs() > LARGEST {
                 return Err(TessellationError::Site { index, what, value });
             }
             largest = largest.max(value.abs());

@@ -2,5 +2,6 @@
 
 mod diagrams;
 mod extreme;
+mod power;
 mod properties;
 mod support;

@@ -60,7 +60,7 @@ pub(crate) fn in_cell(cells: &Cells<'_>, site: usize, point: DVec2) -> bool {
 pub(crate) fn violation(diagram: &Diagram, domain: &Domain, tolerance: f64) -> Option<String> {
     let cells = diagram.cells(domain);
     let sum: f64 = cells.areas().iter().sum();
-    if !((sum - domain.area()).abs() <= tolerance * domain.area()) {
+    if sum.is_nan() || (sum - domain.area()).abs() > tolerance * domain.area() {
         return Some(format!("areas sum to {sum}, not {}", domain.area()));
     }
     let size = domain.area().sqrt();
