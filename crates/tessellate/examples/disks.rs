@@ -19,8 +19,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let domain = Domain::rectangle(DVec2::ZERO, DVec2::ONE)?;
     let cells = diagram.cells(&domain);
     let densities = local_densities(&radii, cells.areas());
-    for site in 0..5 {
-        let (area, density) = (cells.areas()[site], densities[site]);
+    for (site, density) in densities.iter().enumerate().take(5) {
+        let area = cells.areas()[site];
         println!(
             "disk {site}: cell {area:.5}, density {density:.3}, neighbours {:?}",
             cells.neighbours(site)
