@@ -1,5 +1,6 @@
 //! From a scene to a simulation: all checks that need no step, then the build by the method of the scene.
 
+mod boundaries;
 mod fluid;
 mod grains;
 mod outputs;
@@ -53,6 +54,8 @@ pub enum Action {
     StopMotion,
     /// A wall opens or closes.
     Wall(String, bool),
+    /// A moving wall or an inlet starts or halts.
+    Moving(String, bool),
 }
 
 /// Collects problems by scene path.

@@ -31,6 +31,9 @@ impl<D: Dim> Dem<D> {
             let ratio = cell.narrowest() / self.pair_reach();
             return Err(SetupError::new("width of the cell over the reach of a pair", ratio, "at least 1.5"));
         }
+        if !self.traffic.is_empty() {
+            return Err(SetupError::new("inlets and outlets in a periodic cell", 1.0, "none"));
+        }
         let shares = cell.edges.inverse();
         for &position in &self.grains.position {
             let share = shares.apply(position - cell.low);
@@ -113,12 +116,17 @@ impl<D: Dim> Dem<D> {
             motion::open_step(&mut self.grains, cell, self.blocks, dt, &mut self.speeds);
             self.load_in_cell(dt, largest)?;
         }
+        self.movers.place(self.clock.time());
         Ok(())
     }
 
     /// One step between its two halves.
     fn load_in_cell(&mut self, dt: f64, largest: f64) -> Result<(), StepError> {
-        let own = crate::motion::fastest(&self.speeds) * dt;
+        let mut own = crate::motion::fastest(&self.speeds) * dt;
+        if !self.movers.is_empty() {
+            own = own.max(self.movers.fastest(dt) * dt);
+            self.movers.place_in_step(self.clock.time(), dt);
+        }
         let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
         let flow = 0.5 * cell.gradient.norm() * (2.0 * largest + self.reach) * dt;
         let stride = own + flow;
@@ -137,9 +145,13 @@ impl<D: Dim> Dem<D> {
         }
         self.push_in_cell(dt, stride);
         self.last_dt = dt;
+        if !self.movers.is_empty() {
+            self.move_walls(dt);
+        }
         let (losses, trouble) = self.pairs.outcome();
         self.close_in_cell(dt);
         self.steps += 1;
+        self.clock.step();
         self.losses += losses;
         trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
     }
@@ -147,7 +159,7 @@ impl<D: Dim> Dem<D> {
     fn push_in_cell(&mut self, dt: f64, margin: f64) {
         let mut force = std::mem::take(&mut self.grains.acceleration);
         let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let seen = view_of(&self.grains, &self.walls, &self.options, self.last_dt);
+        let seen = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
         let started = self.cell.as_deref().map(|cell| cell.start_velocity.as_slice());
         let view = View {
             velocity: &self.grains.middle_velocity,

@@ -265,7 +265,7 @@ impl From<PackingError> for Refusal {
     }
 }
 
-fn grading_of(spec: &GradingSpec) -> Grading {
+pub(super) fn grading_of(spec: &GradingSpec) -> Grading {
     match *spec {
         GradingSpec::Single(diameter) => Grading::Single { diameter: diameter.value() },
         GradingSpec::Beta { min, max, a, b } => Grading::Beta { min: min.value(), max: max.value(), a, b },
