@@ -12,7 +12,7 @@ use crate::grains::Grains;
 use crate::kernel::{Kernel, Laws, Owed, Trouble, View, contact_of, meet_wall, overlapping};
 use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
-use crate::lists::{BlockList, Places, spare};
+use crate::lists::{BlockList, Places, places, spare};
 use crate::material::{Materials, Tension};
 use crate::moving::Reaction;
 use crate::wall::Wall;
@@ -154,13 +154,10 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         skin: f64,
         largest: f64,
     ) {
+        let fresh = self.images.is_empty();
         self.images.resize_with(self.blocks.count(), ImageList::default);
         if let Some(order) = order {
-            let mut places = vec![0_u32; order.len()];
-            for (new, &old) in order.iter().enumerate() {
-                places[old as usize] = new as u32;
-            }
-            self.relocate(&Moved::Sorted { places: &places });
+            self.relocate(&Moved::Sorted { places: &places(order) });
         }
         let bounds = Bounds::of(cell, view.position);
         let (grid, blocks) = (&self.grid, self.blocks);
@@ -172,10 +169,10 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             let start = blocks.range(block).start as u32;
             list.owed = list.pairs.iter().filter(|pair| pair.second < start).count();
             outgoing.resize(outgoing.len() + list.owed, Owed::default());
-            spare(outgoing);
+            spare(outgoing, fresh);
         }
-        self.lists.iter_mut().for_each(BlockList::spare);
-        images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox);
+        self.lists.iter_mut().for_each(|list| list.spare(fresh));
+        images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox, fresh);
     }
 
     fn visit_images(&self, view: &View<'_, D>, visit: &mut dyn FnMut(Contact<D>)) {

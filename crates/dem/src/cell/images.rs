@@ -185,7 +185,7 @@ pub(crate) fn relocate<D: Dim, M: Copy + Default + PartialEq>(
             });
         }
     }
-    spare(scratch);
+    spare(scratch, false);
     for &(pair, memory) in scratch.iter() {
         let (pair, swapped) = moved.pair(pair);
         let memory = if swapped { reversed(memory) } else { memory };
@@ -198,12 +198,14 @@ pub(crate) fn relocate<D: Dim, M: Copy + Default + PartialEq>(
     }
 }
 
-/// Tells every block where it is owed loads of images, besides those of ordinary pairs.
+/// Tells every block where it is owed loads of images, besides those of ordinary pairs;
+/// `fresh` when nothing was listed in this cell before.
 pub(crate) fn fill_inboxes<D: Dim, M>(
     images: &[ImageList<D, M>],
     outgoing: &[Vec<Owed<D>>],
     blocks: Blocks,
     inboxes: &mut [Vec<Receipt>],
+    fresh: bool,
 ) {
     for (block, (list, outgoing)) in images.iter().zip(outgoing).enumerate() {
         let start = blocks.range(block).start as u32;
@@ -215,7 +217,7 @@ pub(crate) fn fill_inboxes<D: Dim, M>(
         }
     }
     for inbox in inboxes {
-        spare(inbox);
+        spare(inbox, fresh);
         inbox.sort_unstable_by_key(Receipt::order);
     }
 }

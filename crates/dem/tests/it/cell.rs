@@ -62,7 +62,7 @@ fn pressed_spheres() -> Dem<D3> {
     with_entry(dem, "cell work and drift", |k, value| if k == 1 { 1.745e-3 } else { value })
 }
 
-contract_tests!(disks_in_a_sheared_cell, sheared_disks, 1.5e-6, warm_up = 1500);
+contract_tests!(disks_in_a_sheared_cell, sheared_disks, 1.5e-6, warm_up = 600);
 contract_tests!(
     disks_without_friction_in_a_cell,
     || filled::<D2>(Lattice::default(), Material { friction: 0.0, ..Material::default() }, short_lists()),
