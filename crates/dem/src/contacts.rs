@@ -154,7 +154,6 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         skin: f64,
         largest: f64,
     ) {
-        let fresh = self.images.is_empty();
         self.images.resize_with(self.blocks.count(), ImageList::default);
         if let Some(order) = order {
             self.relocate(&Moved::Sorted { places: &places(order) });
@@ -169,10 +168,11 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             let start = blocks.range(block).start as u32;
             list.owed = list.pairs.iter().filter(|pair| pair.second < start).count();
             outgoing.resize(outgoing.len() + list.owed, Owed::default());
-            spare(outgoing, fresh);
+            // What a compact block can owe, and be owed, across its border changes as the cell deforms.
+            spare(outgoing, blocks.size());
         }
-        self.lists.iter_mut().for_each(|list| list.spare(fresh));
-        images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox, fresh);
+        self.lists.iter_mut().for_each(BlockList::spare);
+        images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox);
     }
 
     fn visit_images(&self, view: &View<'_, D>, visit: &mut dyn FnMut(Contact<D>)) {

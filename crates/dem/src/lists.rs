@@ -111,11 +111,11 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     }
 
     /// Makes room for lists that change as a cell deforms, so that steps do not allocate.
-    pub(crate) fn spare(&mut self, fresh: bool) {
-        spare(&mut self.partners, fresh);
-        spare(&mut self.memory, fresh);
-        spare(&mut self.near_walls, fresh);
-        spare(&mut self.wall_memory, fresh);
+    pub(crate) fn spare(&mut self) {
+        spare(&mut self.partners, 0);
+        spare(&mut self.memory, 0);
+        spare(&mut self.near_walls, 0);
+        spare(&mut self.wall_memory, 0);
         self.live
             .reserve(self.memory.capacity().saturating_sub(self.live.len()).min(4 * self.partners.len()));
     }
@@ -167,11 +167,10 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     }
 }
 
-/// Doubles the room of a list that is `fresh` or has nearly filled it. A fresh list may have just
-/// room enough by chance, and would be doubled at some later step when it has grown a little.
-pub(crate) fn spare<T>(list: &mut Vec<T>, fresh: bool) {
-    if fresh || list.capacity() < list.len() + list.len() / 4 + 4 {
-        list.reserve(list.len() + 16);
+/// Doubles the room of a list that has nearly filled it, and gives it `least` in any case.
+pub(crate) fn spare<T>(list: &mut Vec<T>, least: usize) {
+    if list.capacity() < least.max(list.len() + list.len() / 4 + 4) {
+        list.reserve((list.len() + 16).max(least.saturating_sub(list.len())));
     }
 }
 

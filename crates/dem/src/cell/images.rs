@@ -185,7 +185,7 @@ pub(crate) fn relocate<D: Dim, M: Copy + Default + PartialEq>(
             });
         }
     }
-    spare(scratch, false);
+    spare(scratch, 0);
     for &(pair, memory) in scratch.iter() {
         let (pair, swapped) = moved.pair(pair);
         let memory = if swapped { reversed(memory) } else { memory };
@@ -198,14 +198,12 @@ pub(crate) fn relocate<D: Dim, M: Copy + Default + PartialEq>(
     }
 }
 
-/// Tells every block where it is owed loads of images, besides those of ordinary pairs;
-/// `fresh` when nothing was listed in this cell before.
+/// Tells every block where it is owed loads of images, besides those of ordinary pairs.
 pub(crate) fn fill_inboxes<D: Dim, M>(
     images: &[ImageList<D, M>],
     outgoing: &[Vec<Owed<D>>],
     blocks: Blocks,
     inboxes: &mut [Vec<Receipt>],
-    fresh: bool,
 ) {
     for (block, (list, outgoing)) in images.iter().zip(outgoing).enumerate() {
         let start = blocks.range(block).start as u32;
@@ -217,7 +215,7 @@ pub(crate) fn fill_inboxes<D: Dim, M>(
         }
     }
     for inbox in inboxes {
-        spare(inbox, fresh);
+        spare(inbox, blocks.size());
         inbox.sort_unstable_by_key(Receipt::order);
     }
 }
