@@ -176,14 +176,14 @@ impl<D: Dim> Dem<D> {
 
     /// Kick and second half of the drift; the cell books its work and follows its stress.
     fn close_in_cell(&mut self, dt: f64) {
-        let pull = self.pairs.pull();
         let Some(cell) = self.cell.as_deref_mut() else { return };
-        let (gradient, middle) = (cell.gradient, cell.edges);
-        let sums =
-            motion::close_step(&mut self.grains, cell, self.pairs.as_ref(), self.blocks, self.gravity, dt);
+        let (pairs, blocks, gravity) = (self.pairs.as_ref(), self.blocks, self.gravity);
         if !cell.deforms() {
-            return;
+            let speeds = &mut self.speeds;
+            return crate::motion::close_step(&mut self.grains, pairs, blocks, gravity, dt, false, speeds);
         }
+        let (gradient, middle, pull) = (cell.gradient, cell.edges, pairs.pull());
+        let sums = motion::close_step(&mut self.grains, cell, pairs, blocks, gravity, dt);
         let mut virial = sums.virial;
         for axis in (0..D::N).filter(|&axis| cell.periodic[axis]) {
             virial = virial.plus(&Matrix::dyad(pull[axis], middle.columns[axis]), -1.0);
