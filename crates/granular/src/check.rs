@@ -5,9 +5,10 @@ use crate::model::{self, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, SolverSpec};
 use crate::scene_file::{SceneProblem, SceneText};
-use granular_core::{Limits, Memory, StepRule};
+use granular_core::{Limits, Memory, Shown, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Wall time spent on measuring the speed of a scene.
@@ -39,11 +40,17 @@ pub struct Report {
 /// # Errors
 /// With all problems of the scene.
 pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
-    let scene: Scene = text.parse()?;
+    let mut scene: Scene = text.parse()?;
+    scene.folder = Path::new(text.name()).parent().unwrap_or(Path::new("")).to_owned();
     let located = |problem: SceneProblem| problem.located_in(text);
     let model =
         model::build(&scene).map_err(|list| Failure::Scene(list.into_iter().map(located).collect()))?;
     Ok((scene, model))
+}
+
+/// All that outputs of a model can show.
+pub fn shown(model: &Model) -> Vec<Shown> {
+    crate::probes::shown(model.simulation.solver())
 }
 
 /// The step of each stage: its own, that of the solver, or the recommended one \[s\].

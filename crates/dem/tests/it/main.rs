@@ -19,6 +19,7 @@ mod moving_walls;
 mod oblique;
 mod restart;
 mod sample;
+mod shaking;
 mod stability;
 mod surfaces;
 mod traffic;

@@ -19,7 +19,7 @@ pub(super) fn nearest_file(folder: &RunFolder, output: &str, time: f64) -> Resul
     Ok(list.parent().unwrap_or(Path::new(".")).join(file))
 }
 
-fn nearest_frame(folder: &RunFolder, output: &str, time: f64) -> Result<Points, Failure> {
+pub(super) fn nearest_frame(folder: &RunFolder, output: &str, time: f64) -> Result<Points, Failure> {
     Ok(read_vtp(&nearest_file(folder, output, time)?)?)
 }
 

@@ -3,6 +3,7 @@
 use super::{Problems, nearest};
 use crate::folder::RESERVED;
 use crate::observers::{Grid, Line};
+use crate::probes;
 use crate::scene::{Chosen, EverySpec, FigureSpec, Scene, Writer};
 use granular_core::{Location, Shown, ShownAs, Solver};
 use std::path::{Component, Path};
@@ -43,6 +44,15 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
             claim(&place, path, files, &mut taken, problems);
         }
     }
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let Some(path) = &stage.save else { continue };
+        let place = format!("stages.{k}.save");
+        if scene.fluid.is_some() {
+            problems.add(place, format!("`{path}`"), "nothing: only grains are saved as a sample", "");
+        } else if check_path(&place, path, problems) {
+            claim(&place, path, vec![path.clone()], &mut taken, problems);
+        }
+    }
     for (k, figure) in scene.figures.iter().enumerate() {
         let place = format!("figures.{k}.path");
         let path = figure.path();
@@ -53,6 +63,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         let (key, empty) = match figure {
             FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
             FigureSpec::Flow { times, .. }
+            | FigureSpec::RadialProfile { times, .. }
             | FigureSpec::Map { times, .. }
             | FigureSpec::Profile { times, .. } => ("times", times.is_empty()),
             _ => ("", false),
@@ -101,8 +112,8 @@ pub fn shown_on_grids(solver: &dyn Solver) -> Vec<Shown> {
 }
 
 /// Checks of probes, fields and columns.
-pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
-    let (own, averaged) = (solver.shown(), Grid::shown());
+pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static str, problems: &mut Problems) {
+    let (own, averaged) = (probes::shown(solver), Grid::shown());
     let mut unknown = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
         let (key, kind) = match &output.write {
@@ -129,7 +140,7 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Pro
     check_grids(scene, solver, problems);
     check_lines(scene, solver, problems);
     check_tracks(scene, solver, problems);
-    check_figures(scene, &unknown, problems);
+    check_figures(scene, front, &unknown, problems);
 }
 
 /// Whether grids of outputs are of grains and make sense.
@@ -216,9 +227,9 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
 
 /// Whether figures draw from outputs that hold what they need. Outputs with `unknown` names have
 /// been blamed: what seems to lack is perhaps only misspelt.
-fn check_figures(scene: &Scene, unknown: &[&str], problems: &mut Problems) {
+fn check_figures(scene: &Scene, front: &'static str, unknown: &[&str], problems: &mut Problems) {
     for (k, figure) in scene.figures.iter().enumerate() {
-        let need = figure.needs();
+        let need = figure.needs(front);
         let place = format!("figures.{k}.{}", need.key);
         let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
         let found = of_kind.clone().find(|output| output.write.path() == need.output);
