@@ -26,4 +26,5 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("column-collapse", include_str!("../templates/column-collapse.ron")),
     ("cylinder", include_str!("../templates/cylinder.ron")),
     ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
+    ("sample", include_str!("../templates/sample.ron")),
 ];

@@ -25,6 +25,7 @@ pub(crate) mod impact;
 mod incline;
 mod laws;
 mod oblique;
+mod packing;
 pub(crate) mod parallel;
 mod plane;
 mod reference;
@@ -32,6 +33,7 @@ pub(crate) mod restitution;
 mod rolling;
 mod row;
 pub mod stability;
+mod stages;
 pub(crate) mod strike;
 mod table;
 
@@ -78,6 +80,7 @@ pub const CASES: &[Case] = &[
     Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
+    Case { name: "packing_densities", about: "samples of a wanted density", run: packing::densities },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case {
         name: "wall_forces",

@@ -30,10 +30,10 @@ pub(super) fn runout(
     let height = running_median(&over_time("height", &|height| height / width));
     let last = |points: &[[f64; 2]]| points.last().map_or(f64::NAN, |point| point[1]);
     let ends = run_out.first().zip(run_out.last()).map_or([0.0; 2], |(first, last)| [first[0], last[0]]);
-    let [spread, high] = if front == "front" {
-        ["(L − L₀) / L₀ [-]", "H / L₀ [-]"]
+    let [spread, high, unit] = if front == "front" {
+        ["(L − L₀) / L₀ [-]", "H / L₀ [-]", "L₀"]
     } else {
-        ["(r − r₀) / r₀ [-]", "H / r₀ [-]"]
+        ["(r − r₀) / r₀ [-]", "H / r₀ [-]", "r₀"]
     };
     let mut charts = vec![
         Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear(spread))
@@ -43,7 +43,7 @@ pub(super) fn runout(
             ))
             .with(Series::new(if laws.is_empty() { "" } else { "this run" }, run_out, Style::Line)),
         Chart::new("Height", Axis::linear(units.time_label()), Axis::linear(high))
-            .note(format!("final height {:.3} {}", last(&height), &high[4..7]))
+            .note(format!("final height {:.3} {unit}", last(&height)))
             .with(Series::new(if laws.is_empty() { "" } else { "this run" }, height, Style::Line).colour(1)),
     ];
     for (chart, of_height) in charts.iter_mut().zip([false, true]) {

@@ -21,6 +21,7 @@ mod hydrostatic;
 mod momentum;
 mod moving_walls;
 mod oblique_impact;
+mod packing_densities;
 mod poiseuille;
 mod restitution;
 mod sliding_to_rolling;
