@@ -78,9 +78,15 @@ mod tests {
     fn parts_of_a_disk_match_a_fine_raster() {
         let count = 2000;
         let step = 2.0 / f64::from(count);
-        for (x, y) in
-            [(0.3, 0.4), (-0.3, 0.4), (-0.5, -0.6), (0.9, 0.8), (-0.9, 0.8), (2.0, -0.2), (-0.8, -0.9)]
-        {
+        for (x, y) in [
+            (0.3_f64, 0.4_f64),
+            (-0.3, 0.4),
+            (-0.5, -0.6),
+            (0.9, 0.8),
+            (-0.9, 0.8),
+            (2.0, -0.2),
+            (-0.8, -0.9),
+        ] {
             let mut inside = 0.0;
             for i in 0..count {
                 let px = -1.0 + (f64::from(i) + 0.5) * step;

@@ -167,7 +167,8 @@ impl Grid {
             (0..D::N)
                 .fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, faces[axis][choice >> axis & 1]))
         };
-        let sign = |choice: usize| if (D::N as u32 - choice.count_ones()) % 2 == 0 { 1.0 } else { -1.0 };
+        let sign =
+            |choice: usize| if (D::N as u32 - choice.count_ones()).is_multiple_of(2) { 1.0 } else { -1.0 };
         (0..1 << D::N).map(|choice| sign(choice) * D::ball_below(radius, corner(choice))).sum()
     }
 }

@@ -1,4 +1,4 @@
-//! Samples of a wanted density: dense, loose and between \[Kumar2014, section 4.2.4\].
+//! Samples of a wanted density: dense, loose and between \[Kumar2014, chapter 4\].
 
 use super::Effort;
 use super::row::{Measure, Rows, Tier};
@@ -11,7 +11,7 @@ use core::f64::consts::PI;
 const TARGETS: [(&str, f64); 3] = [("dense", 0.83), ("loose", 0.79), ("slope pile", 0.82)];
 /// Allowed distance from the target, over the target.
 const NEAR: f64 = 0.005;
-/// Bound on the homogeneity \[Kumar2014, section 3.5.5\].
+/// Bound on the homogeneity \[Kumar2014, eq. 3.61\].
 const EVEN: f64 = 0.05;
 /// Bound on what the cut cells of the bulk make of a lattice.
 const LATTICE: f64 = 0.01;
@@ -26,7 +26,7 @@ struct Prepared {
 }
 
 pub(super) fn densities(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
-    let (grains, seeds) = if effort == Effort::Full { (3000, 1..=3) } else { (400, 1..=1) };
+    let (grains, seeds) = if effort == Effort::Full { (3000, 1..=3) } else { (300, 1..=1) };
     let runs: Vec<(f64, u64)> =
         TARGETS.iter().flat_map(|&(_, target)| seeds.clone().map(move |seed| (target, seed))).collect();
     let mut prepared =

@@ -7,7 +7,7 @@ use std::fs;
 /// A deposit that is shaken and saved.
 const PREPARE: &str = r#"Scene(
     version: 1, dimension: Plane, gravity: [0.0, -9.81],
-    materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.2, friction: 0.3) },
+    materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.3) },
     sample: Column(extent: Grains(150), aspect_ratio: 1.0, grading: EqualMass(min: "0.9 mm", max: "1.4 mm"),
         material: "glass", packing: Loose, seed: 2),
     walls: [Floor(material: "glass"), Left(material: "glass"), Right(material: "glass")],
@@ -27,7 +27,7 @@ const PREPARE: &str = r#"Scene(
 /// The same grains behind a gate.
 const COLLAPSE: &str = r#"Scene(
     version: 1, dimension: Plane, gravity: [0.0, -9.81],
-    materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.2, friction: 0.3) },
+    materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.3) },
     sample: File(path: "prepared/saved/sample.csv"),
     walls: [Floor(material: "glass"), Left(material: "glass"), Gate(material: "glass", opens: "collapse")],
     stages: [(name: "settle", end: For("5 ms")), (name: "collapse", end: For("60 ms"))],
@@ -45,7 +45,7 @@ fn a_saved_sample_collapses_in_another_scene() {
     fs::write(scratch.path("prepare.ron"), PREPARE).unwrap();
     fs::write(scratch.path("collapse.ron"), COLLAPSE).unwrap();
     scratch
-        .granular(&["run", "prepare.ron", "--out", "prepared"])
+        .granular(&["run", "prepare.ron", "--out", "prepared", "--threads", "1"])
         .expect(0)
         .says(&["not packed within the time"]);
     let table = "prepared/series.csv";
@@ -67,11 +67,12 @@ fn a_saved_sample_collapses_in_another_scene() {
     // The table says where the bulk begins to exist: grains in flight have none.
     assert!(solid[0].is_nan());
 
-    scratch.granular(&["run", "collapse.ron", "--out", "fallen", "-q"]).expect(0);
+    scratch.granular(&["run", "collapse.ron", "--out", "fallen", "-q", "--threads", "1"]).expect(0);
     let sample = |path: &str| fs::read(scratch.path(path)).unwrap();
     assert!(sample("prepared/saved/sample.csv") == sample("fallen/initial-sample.csv"));
     let front = column(&scratch, "fallen/series.csv", "front");
-    assert!(front.last().unwrap() > &(1.2 * front[0]), "{front:?}");
+    let farthest = front.iter().copied().fold(0.0, f64::max);
+    assert!(farthest > 1.3 * front[0], "{front:?}");
     // The folder holds what it needs: the sample may go.
     fs::remove_dir_all(scratch.path("prepared")).unwrap();
     scratch.granular(&["check", "fallen/scene.ron"]).expect(0);
@@ -84,17 +85,17 @@ fn a_saved_sample_collapses_in_another_scene() {
 /// Half a cylinder behind a tube that lifts.
 const LIFTED: &str = r#"Scene(
     version: 1, dimension: Space, gravity: [0.0, 0.0, -9.81],
-    materials: { "glass": (density: 2650, normal_stiffness: "1e4 N/m", restitution: 0.2, friction: 0.3, rolling_friction: 0.1) },
-    sample: Cylinder(extent: Width("12 mm"), aspect_ratio: 0.8, half: true, grading: Single("2 mm"), material: "glass",
+    materials: { "glass": (density: 2650, normal_stiffness: "1e4 N/m", restitution: 0.5, friction: 0.3, rolling_friction: 0.1) },
+    sample: Cylinder(extent: Width("20 mm"), aspect_ratio: 0.8, half: true, grading: Single("2 mm"), material: "glass",
         packing: Loose),
     walls: [
         Floor(material: "glass"), Sides(material: "glass"),
-        Tube(name: "tube", from: ["0 mm", "0 mm", "-1 mm"], to: ["0 mm", "0 mm", "40 mm"], radius: "6 mm",
+        Tube(name: "tube", from: ["0 mm", "0 mm", "-1 mm"], to: ["0 mm", "0 mm", "40 mm"], radius: "10 mm",
             material: "glass", moves: Steady(["0 m/s", "0 m/s", "0.5 m/s"])),
     ],
     stages: [
-        (name: "settle", end: For("40 ms")),
-        (name: "lift", end: For("80 ms"), changes: [Start("tube")]),
+        (name: "settle", end: For("80 ms")),
+        (name: "lift", end: For("100 ms"), changes: [Start("tube")]),
     ],
     solvers: { "grains": Dem(()) },
     outputs: [(every: Time("2 ms"), write: Table(path: "series.csv", probes: ["radial_front", "height", "force_on_front_y",
@@ -105,12 +106,12 @@ const LIFTED: &str = r#"Scene(
 fn half_a_cylinder_stays_in_its_tube_until_that_lifts() {
     let scratch = Scratch::new("lifted");
     fs::write(scratch.path("lifted.ron"), LIFTED).unwrap();
-    scratch.granular(&["run", "lifted.ron", "--out", "lifted", "-q"]).expect(0);
+    scratch.granular(&["run", "lifted.ron", "--out", "lifted", "-q", "--threads", "1"]).expect(0);
     let front = column(&scratch, "lifted/series.csv", "radial_front");
-    assert!(front[..20].iter().all(|front| *front < 6.01e-3), "{front:?}");
-    assert!(front.last().unwrap() > &7e-3, "{front:?}");
+    assert!(front[..40].iter().all(|front| *front < 10.01e-3), "{front:?}");
+    assert!(front.last().unwrap() > &10.5e-3, "{front:?}");
     // It leans on its flat side, and the tube carries no load any more.
-    assert!(column(&scratch, "lifted/series.csv", "force_on_front_y")[19] < 0.0);
+    assert!(column(&scratch, "lifted/series.csv", "force_on_front_y")[39] < 0.0);
     assert_eq!(column(&scratch, "lifted/series.csv", "force_on_tube_z").last(), Some(&0.0));
     // In the plane there is none, and a whole one has no sides.
     for (edit, expected) in [
