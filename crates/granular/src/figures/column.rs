@@ -50,11 +50,8 @@ pub(super) fn runout(
         for law in laws.iter().filter(|law| law.of_height == of_height) {
             let value = law.at(aspect);
             let level = ends.map(|time| [time, value]).to_vec();
-            *chart = std::mem::take(chart).with(Series::new(
-                format!("{}: {value:.2}", law.label),
-                level,
-                Style::Dashed,
-            ));
+            let label = format!("{}: {value:.2}", law.label);
+            *chart = std::mem::take(chart).with(Series::new(label, level, Style::Dashed).colour(7));
         }
     }
     Panels::new(title(scene, "run-out and height"), 2, charts)
