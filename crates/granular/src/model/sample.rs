@@ -267,16 +267,20 @@ impl From<GradingError> for Refusal {
 impl From<PackingError> for Refusal {
     fn from(error: PackingError) -> Self {
         match error {
+            PackingError::OutOfRange { what, value, allowed } if what.starts_with("edge") => {
+                let value = format!("too narrow a sample: an edge of its base is {value} m");
+                Self { path: "sample.extent", value, allowed }
+            }
             PackingError::OutOfRange { what, value, allowed } if what.starts_with("width") => {
                 let value = format!("too narrow a column: its width is {value} m");
                 Self { path: "sample.extent", value, allowed }
             }
             PackingError::OutOfRange { what, value, allowed } => {
-                let value = format!("a column that cannot be filled: {what} is {value}");
+                let value = format!("a sample that cannot be filled: {what} is {value}");
                 Self { path: "sample", value, allowed }
             }
             other => {
-                let value = format!("a column that cannot be filled: {other}");
+                let value = format!("a sample that cannot be filled: {other}");
                 Self { path: "sample", value, allowed: "a wider column or another seed".to_owned() }
             }
         }
