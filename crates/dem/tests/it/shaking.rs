@@ -58,7 +58,7 @@ fn the_work_of_shaking_is_in_the_ledger() {
     let mut dem = heap();
     dem.set_shaking(Some(shaking())).unwrap();
     let start = dem.energies().mechanical();
-    dem.advance(DT, 8000).unwrap();
+    dem.advance(DT, 40_000).unwrap();
     let losses = dem.losses().total();
     assert!(losses > 0.5 * start, "it is shaken well: {losses} of {start}");
     let residual = dem.energy_residual().unwrap();
