@@ -13,6 +13,7 @@ use crate::lists::BlockList;
 use crate::material::{Materials, Tension};
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, PerBlock, Section, SnapshotError};
+use multiversion::multiversion;
 
 /// A contact between steps, for output.
 #[derive(Clone, Copy, Debug)]
@@ -128,8 +129,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
                 tally: Tally::default(),
                 trouble: None,
             };
-            kernel.pairs(&mut list.0[0], &mut outgoing.0[0]);
-            kernel.walls(&mut list.0[0]);
+            pass(&mut kernel, &mut list.0[0], &mut outgoing.0[0]);
             result.0[0] = (kernel.tally.losses(), kernel.trouble);
         });
     }
@@ -235,6 +235,18 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let inbox: usize = self.inbox.iter().map(|i| i.capacity() * size_of::<Receipt>()).sum();
         (lists + outgoing + inbox, size_of::<L::Memory>())
     }
+}
+
+/// One pass over the contacts of a block, compiled for wide registers too. Nothing is contracted:
+/// the bits are the same.
+#[multiversion(targets("x86_64+avx2"))]
+fn pass<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
+    kernel: &mut Kernel<'_, D, L, LEDGER>,
+    list: &mut BlockList<L::Memory>,
+    outgoing: &mut [Owed<D>],
+) {
+    kernel.pairs(list, outgoing);
+    kernel.walls(list);
 }
 
 fn contact_of<D: Dim, L: ContactLaw<D>>(

@@ -9,6 +9,7 @@ mod figure;
 mod flows;
 pub mod lattice;
 mod restitution;
+mod settling;
 pub mod speed;
 mod state;
 mod study;
