@@ -31,3 +31,7 @@ pub const CAVITY_V: &str = include_str!("../cavity/reference_v.csv");
 pub const SQUARE_ARRAY: &str = include_str!("../square_array/reference.csv");
 /// Coefficients of a cylinder in a channel.
 pub const CYLINDER: &str = include_str!("../cylinder/reference.csv");
+/// Closed form of impacts of elastic spheres.
+pub const HERTZ_IMPACT: &str = include_str!("../hertz_impact/reference.csv");
+/// Materials and speeds of the impacts of Chung and Ooi.
+pub const CHUNG_OOI: &str = include_str!("../chung_ooi/reference.csv");

@@ -91,6 +91,8 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
     const UP: usize;
     /// Moment of inertia of a uniform ball over `mass * radius^2`: 1/2 for a disk, 2/5 for a sphere.
     const BALL_INERTIA: f64;
+    /// Whether two balls can turn about their common normal.
+    const TWISTS: bool;
     /// What a grain is called.
     const BALL: &'static str;
     /// Position, velocity, force.
@@ -112,6 +114,8 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
     fn follow(spring: Self::Spin, normal: Self::Vec, twist: f64) -> Self::Spin;
     /// Rate of turning about the normal; zero in the plane.
     fn twist(spin: Self::Spin, normal: Self::Vec) -> f64;
+    /// The spin or torque of this size about the normal; zero in the plane.
+    fn about(normal: Self::Vec, size: f64) -> Self::Spin;
     /// Shows vectors to an output.
     fn vector_field(values: &[Self::Vec]) -> FieldRef<'_>;
     /// Shows spins to an output.
@@ -217,6 +221,7 @@ impl Dim for D2 {
     const AXES: &'static [&'static str] = &["x", "y"];
     const UP: usize = 1;
     const BALL_INERTIA: f64 = 0.5;
+    const TWISTS: bool = false;
     const BALL: &'static str = "disk";
     type Vec = DVec2;
     type Spin = f64;
@@ -245,6 +250,10 @@ impl Dim for D2 {
     fn twist(_spin: f64, _normal: DVec2) -> f64 {
         0.0
     }
+    #[inline(always)]
+    fn about(_normal: DVec2, _size: f64) -> f64 {
+        0.0
+    }
     fn vector_field(values: &[DVec2]) -> FieldRef<'_> {
         FieldRef::Vector2(values)
     }
@@ -258,6 +267,7 @@ impl Dim for D3 {
     const AXES: &'static [&'static str] = &["x", "y", "z"];
     const UP: usize = 2;
     const BALL_INERTIA: f64 = 0.4;
+    const TWISTS: bool = true;
     const BALL: &'static str = "sphere";
     type Vec = DVec3;
     type Spin = DVec3;
@@ -293,6 +303,10 @@ impl Dim for D3 {
     #[inline(always)]
     fn twist(spin: DVec3, normal: DVec3) -> f64 {
         spin.dot(normal)
+    }
+    #[inline(always)]
+    fn about(normal: DVec3, size: f64) -> DVec3 {
+        normal * size
     }
     fn vector_field(values: &[DVec3]) -> FieldRef<'_> {
         FieldRef::Vector3(values)

@@ -89,6 +89,18 @@ impl<T: Stored, const N: usize> Stored for [T; N] {
     }
 }
 
+impl<A: Stored, B: Stored> Stored for (A, B) {
+    const BYTES: usize = A::BYTES + B::BYTES;
+    fn write(self, to: &mut Vec<u8>) {
+        self.0.write(to);
+        self.1.write(to);
+    }
+    fn read(from: &[u8]) -> Self {
+        let (first, second) = from.split_at(A::BYTES);
+        (A::read(first), B::read(second))
+    }
+}
+
 impl Stored for DVec2 {
     const BYTES: usize = 16;
     fn write(self, to: &mut Vec<u8>) {

@@ -5,14 +5,16 @@
 //! block goes to `outgoing`, from where that block collects it in the order of its `inbox`.
 //! Every grain thus sums its loads in an order that depends on the state alone.
 
+use crate::cell::Cell;
+use crate::cell::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
 use crate::grains::Grains;
 use crate::kernel::{Kernel, Laws, Owed, Trouble, View, meet_wall, overlapping, push_of};
 use crate::law::{ContactLaw, Meeting};
 use crate::ledger::{Losses, Tally};
-use crate::lists::BlockList;
+use crate::lists::{BlockList, spare};
 use crate::material::{Materials, Tension};
 use granular_core::search::CellGrid;
-use granular_core::{Blocks, Dim, PerBlock, Section, SnapshotError};
+use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
 
 /// A contact between steps, for output.
@@ -22,6 +24,12 @@ pub struct Contact<D: Dim> {
     pub first: usize,
     /// The second body.
     pub partner: Partner,
+    /// From the centre of the second grain, or of its image, to that of the first \[m\]; from the nearest
+    /// point of a wall.
+    pub branch: D::Vec,
+    /// Edges of the periodic cell by which the image of the second grain is away from it; zeros for an
+    /// ordinary pair.
+    pub shift: [i8; 3],
     /// Unit vector from the second body to the first.
     pub normal: D::Vec,
     /// Overlap \[m\].
@@ -56,8 +64,13 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn outcome(&self) -> (Losses, Option<Trouble>);
     /// Visits all contacts that overlap, in a fixed order.
     fn visit(&self, view: &View<'_, D>, visit: &mut dyn FnMut(Contact<D>));
-    /// Visits all listed pairs of grains.
-    fn visit_listed(&self, visit: &mut dyn FnMut(usize, usize));
+    /// Visits all listed pairs of grains, with the distance of their centres.
+    fn visit_listed(&self, view: &View<'_, D>, visit: &mut dyn FnMut(usize, usize, f64));
+    /// For each axis, the sum over contacts across faces of the cell of the force on the first grain
+    /// times the edges between the grains \[N\].
+    fn pull(&self) -> [D::Vec; 3];
+    /// Moves memories of contacts in a cell; lists are to be built next.
+    fn relocate(&mut self, moved: &Moved<'_>);
     /// Takes changed materials.
     fn update(&mut self, materials: &Materials, tension: Tension);
     fn save(&self, grains: &Grains<D>, to: &mut Section);
@@ -76,12 +89,23 @@ pub(crate) struct Receipt {
     pub(crate) place: u32,
 }
 
+impl Receipt {
+    /// Grains first keeps writes in order of memory. The key is unique, so that an unstable sort,
+    /// which does not allocate, has one outcome.
+    pub(crate) fn order(&self) -> (u32, u32, u32) {
+        (self.grain, self.block, self.place)
+    }
+}
+
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
     laws: Vec<L>,
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
+    /// One per block in a periodic cell; none elsewhere.
+    images: Vec<ImageList<D, L::Memory>>,
+    relocated: Vec<(ImagePair, L::Memory)>,
     outgoing: Vec<Vec<Owed<D>>>,
     inbox: Vec<Vec<Receipt>>,
     grid: CellGrid<D>,
@@ -96,6 +120,8 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             materials: materials.len(),
             blocks,
             lists: (0..count).map(|_| BlockList::default()).collect(),
+            images: Vec::new(),
+            relocated: Vec::new(),
             outgoing: vec![Vec::new(); count],
             inbox: vec![Vec::new(); count],
             grid: CellGrid::default(),
@@ -103,6 +129,56 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         };
         Pairs::<D>::update(&mut contacts, materials, tension);
         contacts
+    }
+
+    /// Lists pairs across the faces of a cell, after ordinary ones.
+    fn list_images(
+        &mut self,
+        view: &View<'_, D>,
+        cell: &Cell<D>,
+        order: Option<&[u32]>,
+        skin: f64,
+        largest: f64,
+    ) {
+        self.images.resize_with(self.blocks.count(), ImageList::default);
+        if let Some(order) = order {
+            let mut places = vec![0_u32; order.len()];
+            for (new, &old) in order.iter().enumerate() {
+                places[old as usize] = new as u32;
+            }
+            self.relocate(&Moved::Sorted { places: &places });
+        }
+        let bounds = Bounds::of(cell, view.position);
+        let (grid, blocks) = (&self.grid, self.blocks);
+        let near = images::Near { view, cell, grid, bounds: &bounds, skin, largest };
+        blocks.for_each(PerBlock(&mut self.images), |block, list| {
+            list.0[0].build(&near, blocks.range(block));
+        });
+        for (block, (list, outgoing)) in self.images.iter_mut().zip(&mut self.outgoing).enumerate() {
+            let start = blocks.range(block).start as u32;
+            list.owed = list.pairs.iter().filter(|pair| pair.second < start).count();
+            outgoing.resize(outgoing.len() + list.owed, Owed::default());
+            spare(outgoing);
+        }
+        self.lists.iter_mut().for_each(BlockList::spare);
+        images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox);
+    }
+
+    fn visit_images(&self, view: &View<'_, D>, visit: &mut dyn FnMut(Contact<D>)) {
+        let laws = Laws { list: &self.laws, materials: self.materials };
+        let Some(cell) = view.cell else { return };
+        for list in &self.images {
+            for (pair, &memory) in list.pairs.iter().zip(&list.memory) {
+                let met = meet_image::<D, L>(view, cell, pair, 0.0);
+                let Some((meeting, _, _)) = met else { continue };
+                let (first, second) = (pair.first as usize, pair.second as usize);
+                let law = laws.between(view.material_of(first), view.material_of(second));
+                let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
+                let bodies = (first, Partner::Grain(second));
+                let contact = contact_of::<D, L>(law, &meeting, memory, bodies, branch);
+                visit(Contact { shift: pair.shift, ..contact });
+            }
+        }
     }
 
     fn push_ledger<const LEDGER: bool>(
@@ -116,10 +192,11 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             PerBlock(&mut self.lists),
             PerBlock(&mut self.outgoing),
             PerBlock(&mut self.results),
+            PerBlock(&mut self.images),
             force,
             torque,
         );
-        blocks.for_each(work, |block, (list, outgoing, result, force, torque)| {
+        blocks.for_each(work, |block, (list, outgoing, result, images, force, torque)| {
             let mut kernel = Kernel::<D, L, LEDGER> {
                 view,
                 laws,
@@ -130,6 +207,11 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
                 trouble: None,
             };
             pass(&mut kernel, &mut list.0[0], &mut outgoing.0[0]);
+            if let (Some(cell), Some(images)) = (view.cell, images.0.first_mut()) {
+                let of_images = outgoing.0[0].len() - images.owed;
+                kernel.images(cell, images, &mut outgoing.0[0][of_images..]);
+            }
+            kernel.walls(&mut list.0[0]);
             result.0[0] = (kernel.tally.losses(), kernel.trouble);
         });
     }
@@ -152,6 +234,9 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             outgoing.resize(owed, Owed::default());
         }
         crate::lists::fill_inboxes(&self.lists, blocks, &mut self.inbox);
+        if let Some(cell) = view.cell {
+            self.list_images(view, cell, order, skin, largest);
+        }
     }
 
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]) {
@@ -188,7 +273,8 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             list.visit_pairs(self.blocks.range(block), |first, second, &memory| {
                 if let Some(meeting) = overlapping::<D, L>(view, first, second) {
                     let law = laws.between(view.material_of(first), view.material_of(second));
-                    visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Grain(second)));
+                    let branch = view.position[first] - view.position[second];
+                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Grain(second)), branch));
                 }
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
@@ -196,16 +282,40 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
                 let met = meet_wall::<D, L>(view, first, &view.walls[wall]);
                 if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-                    visit(contact_of::<D, L>(law, &meeting, memory, first, Partner::Wall(wall)));
+                    let branch = meeting.normal * (view.radius[first] - meeting.overlap);
+                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
                 }
             }
         }
+        self.visit_images(view, visit);
     }
 
-    fn visit_listed(&self, visit: &mut dyn FnMut(usize, usize)) {
+    fn visit_listed(&self, view: &View<'_, D>, visit: &mut dyn FnMut(usize, usize, f64)) {
         for (block, list) in self.lists.iter().enumerate() {
-            list.visit_pairs(self.blocks.range(block), |first, second, _| visit(first, second));
+            list.visit_pairs(self.blocks.range(block), |first, second, _| {
+                visit(first, second, (view.position[first] - view.position[second]).length());
+            });
         }
+        let Some(cell) = view.cell else { return };
+        for pair in self.images.iter().flat_map(|list| &list.pairs) {
+            let (first, second) = (pair.first as usize, pair.second as usize);
+            let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
+            visit(first, second, branch.length());
+        }
+    }
+
+    fn pull(&self) -> [D::Vec; 3] {
+        let mut pull = [D::Vec::ZERO; 3];
+        for list in &self.images {
+            pull.iter_mut().zip(&list.pull).for_each(|(sum, &of_block)| *sum += of_block);
+        }
+        pull
+    }
+
+    fn relocate(&mut self, moved: &Moved<'_>) {
+        self.images.resize_with(self.blocks.count(), ImageList::default);
+        let Self { lists, images, relocated, blocks, .. } = self;
+        images::relocate(lists, images, *blocks, moved, relocated, L::reversed);
     }
 
     fn update(&mut self, materials: &Materials, tension: Tension) {
@@ -215,10 +325,17 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn save(&self, grains: &Grains<D>, to: &mut Section) {
         crate::lists::save(&self.lists, self.blocks, &grains.id, to);
+        if !self.images.is_empty() {
+            images::save(&self.images, &grains.id, to);
+        }
     }
 
     fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError> {
-        crate::lists::restore(&mut self.lists, self.blocks, &grains.id, from)
+        crate::lists::restore(&mut self.lists, self.blocks, &grains.id, from)?;
+        if !self.images.is_empty() {
+            images::restore(&mut self.images, self.blocks, &grains.id, from)?;
+        }
+        Ok(())
     }
 
     fn law_name(&self) -> &'static str {
@@ -233,11 +350,12 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
         let outgoing: usize = self.outgoing.iter().map(|o| o.capacity() * size_of::<Owed<D>>()).sum();
         let inbox: usize = self.inbox.iter().map(|i| i.capacity() * size_of::<Receipt>()).sum();
-        (lists + outgoing + inbox, size_of::<L::Memory>())
+        let images: usize = self.images.iter().map(ImageList::bytes).sum();
+        (lists + outgoing + inbox + images, size_of::<L::Memory>())
     }
 }
 
-/// One pass over the contacts of a block, compiled for wide registers too. Nothing is contracted:
+/// The contacts of a block between grains, compiled for wide registers too. Nothing is contracted:
 /// the bits are the same.
 #[multiversion(targets("x86_64+avx2"))]
 fn pass<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
@@ -246,20 +364,21 @@ fn pass<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     outgoing: &mut [Owed<D>],
 ) {
     kernel.pairs(list, outgoing);
-    kernel.walls(list);
 }
 
 fn contact_of<D: Dim, L: ContactLaw<D>>(
     law: &L,
     meeting: &Meeting<D>,
     memory: L::Memory,
-    first: usize,
-    partner: Partner,
+    (first, partner): (usize, Partner),
+    branch: D::Vec,
 ) -> Contact<D> {
     let (load, energy) = law.at_rest(meeting, memory);
     Contact {
         first,
         partner,
+        branch,
+        shift: [0; 3],
         normal: meeting.normal,
         overlap: meeting.overlap,
         normal_force: load.normal,

@@ -1,12 +1,14 @@
 //! The solver: set-up, the step, and changes between stages.
 
+use crate::cell::Cell;
+use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
 use crate::kernel::{Trouble, View};
-use crate::law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
+use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
-use crate::setup::{LeverArm, Options, Setup, check_options};
+use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::wall::Wall;
 use crate::{lists, motion};
 use granular_core::solver::check_step;
@@ -34,6 +36,7 @@ pub struct Dem<D: Dim> {
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
     pub(crate) pairs: Box<dyn Pairs<D>>,
+    pub(crate) cell: Option<Box<Cell<D>>>,
     pub(crate) blocks: Blocks,
     pub(crate) losses: Losses,
     /// Energy put in by changes between steps, such as a new gravity \[J\].
@@ -45,19 +48,20 @@ pub struct Dem<D: Dim> {
     custom_law: bool,
     skin: f64,
     /// Reach of the present lists \[m\].
-    reach: f64,
+    pub(crate) reach: f64,
     /// Bound on how far any grain moved since the lists were built \[m\].
-    travel: f64,
-    speeds: Vec<u64>,
+    pub(crate) travel: f64,
+    pub(crate) speeds: Vec<u64>,
 }
 
 impl<D: Dim> Dem<D> {
-    /// A simulation with the linear law that the materials need: without friction no grain
+    /// A simulation with the law that the options and materials need: without friction no grain
     /// turns and no contact remembers anything, and neither takes memory.
     ///
     /// # Errors
     /// When a value is out of range.
     pub fn new(setup: Setup<D>) -> Result<Self, SetupError> {
+        check_stiffness(&setup.materials, setup.options.contact)?;
         let law = |materials: &Materials, options: &Options, blocks| {
             choose_law::<D>(materials, options, blocks, needs_rotation(materials))
         };
@@ -102,6 +106,7 @@ impl<D: Dim> Dem<D> {
             options,
             grains,
             pairs,
+            cell: None,
             blocks,
             losses: Losses::default(),
             injected: 0.0,
@@ -236,7 +241,8 @@ impl<D: Dim> Dem<D> {
 
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
-        view_of(&self.grains, &self.walls, &self.options, self.last_dt)
+        let cell = self.cell.as_deref();
+        View { cell, ..view_of(&self.grains, &self.walls, &self.options, self.last_dt) }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
@@ -244,11 +250,12 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.skin.max(4.0 * stride);
         self.travel = 0.0;
-        self.pairs.list(&view_of(&self.grains, &self.walls, &self.options, self.last_dt), self.reach, order);
+        let view = view_of(&self.grains, &self.walls, &self.options, self.last_dt);
+        self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
     }
 
     /// Sorts grains in memory when the count of steps says so.
-    fn sort_if_due(&mut self) {
+    pub(crate) fn sort_if_due(&mut self) {
         if self.sorts_after(0) {
             let (_, largest) = self.grains.radius_range();
             let order = self.grains.sort(2.0 * largest);
@@ -296,7 +303,7 @@ impl<D: Dim> Dem<D> {
         (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
     }
 
-    fn not_finite(&self) -> StepError {
+    pub(crate) fn not_finite(&self) -> StepError {
         let grains = &self.grains;
         let at =
             lists::all_finite::<D>(&grains.position).or_else(|| lists::all_finite::<D>(&grains.velocity));
@@ -304,7 +311,7 @@ impl<D: Dim> Dem<D> {
         StepError::NotFinite { solver: "dem", quantity: "motion", id, step: self.steps }
     }
 
-    fn too_deep(&self, trouble: Trouble) -> StepError {
+    pub(crate) fn too_deep(&self, trouble: Trouble) -> StepError {
         let id = self.grains.id[trouble.first as usize];
         StepError::TooStiff {
             what: format!("overlap over radius at grain {id} in step {}", self.steps),
@@ -315,7 +322,7 @@ impl<D: Dim> Dem<D> {
     }
 }
 
-fn view_of<'a, D: Dim>(
+pub(crate) fn view_of<'a, D: Dim>(
     grains: &'a Grains<D>,
     walls: &'a [Wall<D>],
     options: &Options,
@@ -332,30 +339,11 @@ fn view_of<'a, D: Dim>(
         material: &grains.material,
         first_material: grains.first_material,
         walls,
+        cell: None,
         dt: 0.0,
         last_dt,
         margin: 0.0,
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
-    }
-}
-
-fn needs_rotation(materials: &Materials) -> bool {
-    materials.pairs().any(|(.., pair)| pair.friction > 0.0 || pair.rolling_friction > 0.0)
-}
-
-fn choose_law<D: Dim>(
-    materials: &Materials,
-    options: &Options,
-    blocks: Blocks,
-    turning: bool,
-) -> Box<dyn Pairs<D>> {
-    let tension = options.tension;
-    if materials.pairs().any(|(.., pair)| pair.rolling_friction > 0.0) {
-        Box::new(Contacts::<D, LinearRolling>::new(materials, tension, blocks))
-    } else if turning {
-        Box::new(Contacts::<D, LinearFrictional>::new(materials, tension, blocks))
-    } else {
-        Box::new(Contacts::<D, LinearNormal>::new(materials, tension, blocks))
     }
 }
 
@@ -381,6 +369,9 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        if self.cell.is_some() {
+            return self.advance_in_cell(dt, steps);
+        }
         // Between two steps of one call, the end of one and the start of the next share a pass.
         let mut opened = false;
         for remaining in (0..steps).rev() {

@@ -1,5 +1,6 @@
 //! The pass over the contacts of a block: who meets within the step, and the load between them.
 
+use crate::cell::Cell;
 use crate::law::{ContactLaw, Load, Meeting};
 use crate::ledger::Tally;
 use crate::lists::BlockList;
@@ -20,6 +21,7 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) material: &'a [u8],
     pub(crate) first_material: u8,
     pub(crate) walls: &'a [Wall<D>],
+    pub(crate) cell: Option<&'a Cell<D>>,
     /// The step \[s\]; zero between steps.
     pub(crate) dt: f64,
     /// The last step taken \[s\].
@@ -197,7 +199,7 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
 
     /// Notes a contact that is too deep; the step then ends in an error.
     #[inline(always)]
-    fn guard(&mut self, first: usize, overlap: f64, radius: f64) {
+    pub(crate) fn guard(&mut self, first: usize, overlap: f64, radius: f64) {
         if overlap > DEEPEST * radius {
             self.trouble.get_or_insert(Trouble { first: first as u32, overlap, radius });
         }
@@ -234,6 +236,8 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         start_slip: D::Spin::ZERO,
         start_roll: D::Spin::ZERO,
         twist: 0.0,
+        twisting: 0.0,
+        start_twisting: 0.0,
         effective_mass: 0.0,
         effective_radius: 0.0,
         dt: view.dt,
@@ -250,6 +254,10 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         let surface = D::tangential(spin * own_arm + other.start_spin * other.arm, normal);
         meeting.start_slip = D::cross(normal, relative) - surface;
         meeting.start_roll = D::tangential(spin - other.start_spin, normal);
+        if L::TWISTING {
+            meeting.twisting = D::twist(view.spin[first] - other.spin, normal);
+            meeting.start_twisting = D::twist(spin - other.start_spin, normal);
+        }
     }
     Some(meeting)
 }
@@ -263,13 +271,27 @@ fn meet_grain<D: Dim, L: ContactLaw<D>>(
     arm: D::Vec,
     distance: f64,
 ) -> Option<(Meeting<D>, (f64, f64))> {
+    let start_velocity = if L::TANGENTIAL { view.start_velocity[second] } else { D::Vec::ZERO };
+    meet_other::<D, L>(view, first, second, arm, distance, (view.velocity[second], start_velocity))
+}
+
+/// [`meet_grain`] where the second grain has other velocities, at the middle and at the start of the step.
+#[inline(always)]
+pub(crate) fn meet_other<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    second: usize,
+    arm: D::Vec,
+    distance: f64,
+    (velocity, start_velocity): (D::Vec, D::Vec),
+) -> Option<(Meeting<D>, (f64, f64))> {
     let (radius, mass) = (view.radius[first], view.mass[first]);
     let (other_radius, other_mass) = (view.radius[second], view.mass[second]);
     let overlap = radius + other_radius - distance;
     let other = Other {
-        velocity: view.velocity[second],
+        velocity,
         spin: if L::TANGENTIAL { view.spin[second] } else { D::Spin::ZERO },
-        start_velocity: if L::TANGENTIAL { view.start_velocity[second] } else { D::Vec::ZERO },
+        start_velocity,
         start_spin: if L::TANGENTIAL { view.start_spin[second] } else { D::Spin::ZERO },
         arm: other_radius - view.arm_share * overlap,
     };
@@ -277,9 +299,7 @@ fn meet_grain<D: Dim, L: ContactLaw<D>>(
     let normal = arm * (1.0 / distance);
     let mut meeting = meeting::<D, L>(view, first, own_arm, normal, overlap, &other)?;
     meeting.effective_mass = mass * other_mass / (mass + other_mass);
-    if L::TANGENTIAL {
-        meeting.effective_radius = radius * other_radius / (radius + other_radius);
-    }
+    meeting.effective_radius = radius * other_radius / (radius + other_radius);
     Some((meeting, (own_arm, other.arm)))
 }
 

@@ -13,7 +13,7 @@ pub struct Losses {
     pub normal_damping: f64,
     /// In tangential dashpots.
     pub tangential_damping: f64,
-    /// By rolling resistance.
+    /// By rolling and twisting resistance.
     pub rolling: f64,
 }
 

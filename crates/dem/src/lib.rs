@@ -6,8 +6,9 @@
 //! m x'' = sum F + m g        I w' = sum l x F
 //! ```
 //!
-//! with linear spring-dashpot contacts, Coulomb friction with a tangential spring, and optional
-//! rolling resistance. The scheme is of second order in time with damping, and contact entry
+//! with contacts that are linear springs and dashpots or those of elastic spheres (Hertz and
+//! Mindlin), Coulomb friction with a tangential spring, and optional resistance against rolling
+//! and twisting. The scheme is of second order in time with damping, and contact entry
 //! and exit included (see [`law::Meeting`]).
 //!
 //! ```
@@ -32,6 +33,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cell;
+mod choice;
+pub mod coarse;
 mod contacts;
 mod dem;
 mod grains;
@@ -49,14 +53,20 @@ pub mod spec;
 mod state;
 pub mod wall;
 
+pub use cell::{Cell, CellControl, Control, Matrix};
+pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;
-pub use law::{ContactLaw, LinearFrictional, LinearNormal, LinearRolling};
+pub use law::{
+    ContactLaw, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, LinearRolling, Rolling, Twisting,
+};
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;
-pub use material::{Material, MaterialId, Materials, PairProperties, SetupError, Tension};
-pub use setup::{LeverArm, Options, Setup};
+pub use material::{
+    Elasticity, HertzImpact, Material, MaterialId, Materials, PairProperties, SetupError, Tension,
+};
+pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use show::Energies;
 pub use wall::{Shape, Wall};
 

@@ -1,19 +1,18 @@
 //! What bounds the step, and what the scene costs in memory.
 
+mod stiffest;
+
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
 use crate::setup::LeverArm;
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
+use stiffest::{Oscillator, Stiffest};
 
 /// Overlap over radius above which an impact is called too soft.
 const SOFT: f64 = 0.05;
 
-/// The stiffest meeting that a scene allows between two materials.
-struct Stiffest {
-    properties: PairProperties,
-    effective_mass: f64,
-    names: String,
-}
+/// Share of the Rayleigh time that the step of Hertz contacts should not exceed \[Li2005\].
+const RAYLEIGH_SHARE: f64 = 0.2;
 
 impl<D: Dim> Dem<D> {
     /// The recommended step \[s\]: a fraction of the shortest contact time, and within the
@@ -32,32 +31,40 @@ impl<D: Dim> Dem<D> {
     }
 
     pub(crate) fn report_limits(&self, report: &mut Limits) {
-        let tension = self.options.tension;
         let stiffest = self.stiffest_pairs();
-        let time = |pair: &Stiffest| pair.properties.contact_time(pair.effective_mass, tension);
-        let Some(shortest) = stiffest.iter().min_by(|a, b| time(a).total_cmp(&time(b))) else { return };
+        let by =
+            |value: fn(&Stiffest) -> f64| stiffest.iter().min_by(move |a, b| value(a).total_cmp(&value(b)));
+        let Some(shortest) = by(|pair| pair.contact_time) else { return };
         let fraction = self.options.steps_per_contact;
         report.steps.push(StepLimit {
             name: "contact time",
-            dt: time(shortest) / fraction,
+            dt: shortest.contact_time / fraction,
             rule: StepRule::Recommended,
             why: format!(
-                "1/{fraction} of the shortest contact time, {:.4e} s ({}, lightest grains)",
-                time(shortest),
-                shortest.names
+                "1/{fraction} of the shortest contact time, {:.4e} s ({}, {})",
+                shortest.contact_time, shortest.names, shortest.meeting
             ),
         });
+        if let Some(first) = by(|pair| pair.rayleigh_time).filter(|pair| pair.rayleigh_time.is_finite()) {
+            report.steps.push(StepLimit {
+                name: "Rayleigh time",
+                dt: RAYLEIGH_SHARE * first.rayleigh_time,
+                rule: StepRule::Recommended,
+                why: format!("{RAYLEIGH_SHARE} of {:.4e} s, lightest grains", first.rayleigh_time),
+            });
+        }
         let neighbours = self.most_neighbours();
         let turns = self.turns();
-        let step = |pair: &Stiffest| {
-            stability_step::<D>(&pair.properties, pair.effective_mass, tension, neighbours, turns)
-        };
+        let step = |pair: &Stiffest| pair.oscillator.largest_step::<D>(neighbours, turns);
         let Some(tightest) = stiffest.iter().min_by(|a, b| step(a).total_cmp(&step(b))) else { return };
         report.steps.push(StepLimit {
             name: "stability",
             dt: step(tightest),
             rule: StepRule::AtMost,
-            why: format!("leapfrog with damping, {neighbours} contacts per grain, {}", tightest.names),
+            why: format!(
+                "leapfrog with damping, {neighbours} contacts per grain, {}, {}",
+                tightest.names, tightest.meeting
+            ),
         });
         report.bounds.push(self.softness(&stiffest));
         report.bounds.push(Bound {
@@ -70,59 +77,41 @@ impl<D: Dim> Dem<D> {
         });
     }
 
-    /// For every pair of materials that can touch, the lightest grains.
-    fn stiffest_pairs(&self) -> Vec<Stiffest> {
-        let count = self.materials.len();
-        let mut lightest = vec![f64::INFINITY; count];
-        for index in 0..self.len() {
-            let place = &mut lightest[self.grains.material_of(index)];
-            *place = place.min(self.grains.mass[index]);
-        }
-        let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
-        let mut pairs = Vec::new();
-        for (a, b, properties) in self.materials.pairs() {
-            let (m, n) = (lightest[a], lightest[b]);
-            if m.is_finite() && n.is_finite() {
-                let names = "grain on grain".to_owned();
-                pairs.push(Stiffest { properties, effective_mass: m * n / (m + n), names });
-            }
-            let mass = if walls.contains(&b) { m } else { f64::INFINITY };
-            let mass = if walls.contains(&a) { mass.min(n) } else { mass };
-            if mass.is_finite() {
-                pairs.push(Stiffest { properties, effective_mass: mass, names: "grain on wall".to_owned() });
-            }
-        }
-        pairs
-    }
-
     /// Contacts that one of the smallest grains can have at once.
     fn most_neighbours(&self) -> usize {
         let kissing = if D::N == 2 { 6 } else { 12 };
+        if self.cell.is_some() {
+            return kissing;
+        }
         kissing.min((self.len().saturating_sub(1) + self.walls.len()).max(1))
     }
 
     /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
     /// through the height of the sample.
     fn softness(&self, pairs: &[Stiffest]) -> Bound {
-        let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
-        let gravity = self.gravity.length();
-        let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        let fastest = speed.max(fall);
+        let fastest = self.fastest_impact();
         let (smallest, _) = self.grains.radius_range();
-        let depth =
-            |pair: &Stiffest| fastest * (pair.effective_mass / pair.properties.normal_stiffness).sqrt();
-        let deepest = pairs.iter().map(depth).fold(0.0, f64::max);
+        let deepest = pairs.iter().map(|pair| pair.deepest).fold(0.0, f64::max);
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
             allowed: 100.0 * crate::kernel::DEEPEST,
             unit: "% of the radius",
             refuses: true,
-            why: format!("two grains that meet at {fastest:.3} m/s; raise the normal stiffness"),
+            why: format!("two grains that meet at {fastest:.3} m/s; raise the stiffness"),
         }
     }
 
-    fn extent_along_gravity(&self) -> f64 {
+    /// The fastest speed there can be \[m/s\]: present speeds, and a fall through the height of
+    /// the sample.
+    pub(crate) fn fastest_impact(&self) -> f64 {
+        let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
+        let gravity = self.gravity.length();
+        let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
+        speed.max(fall)
+    }
+
+    pub(crate) fn extent_along_gravity(&self) -> f64 {
         let direction = self.gravity * (1.0 / self.gravity.length());
         let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
         let lowest = -self.blocks.largest(|i| self.grains.position[i].dot(direction));
@@ -132,7 +121,7 @@ impl<D: Dim> Dem<D> {
     /// Largest overlap over the radius of the smaller grain.
     pub fn deepest_overlap(&self) -> f64 {
         let mut deepest = 0.0_f64;
-        self.pairs.visit(&self.view(), &mut |contact| {
+        self.visit_contacts(&mut |contact| {
             let own = self.grains.radius[contact.first];
             let smaller = match contact.partner {
                 crate::Partner::Grain(second) => own.min(self.grains.radius[second]),
@@ -158,6 +147,9 @@ impl<D: Dim> Dem<D> {
         }
         if !self.options.ledger {
             left_out.push("energy ledger: no output asks for losses".to_owned());
+        }
+        if !D::TWISTS && self.materials.iter().any(|material| material.twisting_friction > 0.0) {
+            left_out.push("twisting resistance: disks cannot twist".to_owned());
         }
         if D::N == 2 {
             left_out.push("third axis: the scene is plane".to_owned());
@@ -190,21 +182,5 @@ pub fn stability_step<D: Dim>(
     neighbours: usize,
     turns: bool,
 ) -> f64 {
-    let zeta = pair.zeta(tension);
-    let normal = pair.normal_stiffness / effective_mass;
-    let normal_damping = 2.0 * zeta * normal.sqrt();
-    let gain = 1.0 + 1.0 / D::BALL_INERTIA;
-    let share = neighbours as f64;
-    let limit = |stiffness: f64, damping: f64| {
-        let (w2, c) = (stiffness * share, damping * share);
-        // w2 dt^2 + 4 c dt = 4 with c = 2 zeta w.
-        2.0 * ((c * c + w2).sqrt() - c) / w2
-    };
-    let along = limit(normal, normal_damping);
-    if !turns || pair.tangential_stiffness <= 0.0 {
-        return along;
-    }
-    let across =
-        limit(gain * pair.tangential_stiffness / effective_mass, gain * pair.damping_ratio * normal_damping);
-    along.min(across)
+    Oscillator::linear(pair, effective_mass, tension).largest_step::<D>(neighbours, turns)
 }

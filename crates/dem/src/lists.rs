@@ -98,6 +98,27 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
         self.near_walls.clear();
     }
 
+    /// Takes the memories of pairs of grains that are not fresh out of the list; those of walls stay.
+    pub(crate) fn harvest_pairs(&mut self, start: usize, mut take: impl FnMut(u32, u32, M)) {
+        self.harvest(start);
+        self.live.drain(..).for_each(|(first, second, memory)| take(first, second, memory));
+    }
+
+    /// Makes room for lists that change as a cell deforms, so that steps do not allocate.
+    pub(crate) fn spare(&mut self) {
+        spare(&mut self.partners);
+        spare(&mut self.memory);
+        spare(&mut self.near_walls);
+        spare(&mut self.wall_memory);
+        self.live
+            .reserve(self.memory.capacity().saturating_sub(self.live.len()).min(4 * self.partners.len()));
+    }
+
+    /// A memory for the next list.
+    pub(crate) fn remember(&mut self, first: u32, second: u32, memory: M) {
+        self.live.push((first, second, memory));
+    }
+
     /// Puts the memories into the new list. A pair that is not near any more had ended.
     fn sow(&mut self, start: usize) {
         self.memory.clear();
@@ -137,6 +158,13 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
             + size_of::<M>() * self.memory.capacity()
             + size_of::<M>() * self.wall_memory.capacity()
             + size_of::<NearWall>() * self.near_walls.capacity()
+    }
+}
+
+/// Doubles the room of a list that has nearly filled it.
+pub(crate) fn spare<T>(list: &mut Vec<T>) {
+    if list.capacity() < list.len() + list.len() / 4 + 4 {
+        list.reserve(list.len() + 16);
     }
 }
 
@@ -181,10 +209,7 @@ pub(crate) fn fill_inboxes<M>(lists: &[BlockList<M>], blocks: Blocks, inboxes: &
             inboxes[receiver].push(Receipt { grain, block: block as u32, place: place as u32 });
         }
     }
-    // Grains first keeps writes in order of memory. The key is unique, so that the unstable sort,
-    // which does not allocate, has one outcome.
-    let key = |receipt: &Receipt| (receipt.grain, receipt.block, receipt.place);
-    inboxes.iter_mut().for_each(|inbox| inbox.sort_unstable_by_key(key));
+    inboxes.iter_mut().for_each(|inbox| inbox.sort_unstable_by_key(Receipt::order));
 }
 
 /// Saves the memories that are not fresh, by the stable identifiers of the grains.

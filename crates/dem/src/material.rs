@@ -1,13 +1,20 @@
 //! Materials, and what two of them make of a contact.
 
+mod elasticity;
+
+pub use elasticity::{Elasticity, HertzImpact};
+
 /// What a grain or wall is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Mass per area and metre of depth, or per volume \[kg/m^3\]. Walls ignore it.
     pub density: f64,
-    /// Normal stiffness between two bodies of this material \[N/m\].
+    /// Normal stiffness between two bodies of this material \[N/m\], for linear contacts. May be
+    /// zero where elastic constants are given.
     pub normal_stiffness: f64,
-    /// Tangential over normal stiffness \[-\].
+    /// Elastic constants, for Hertz contacts.
+    pub elasticity: Option<Elasticity>,
+    /// Tangential over normal stiffness \[-\] of linear contacts.
     pub stiffness_ratio: f64,
     /// Coefficient of restitution of a normal impact \[-\], between 0 (excluded) and 1.
     pub restitution: f64,
@@ -17,6 +24,9 @@ pub struct Material {
     pub friction: f64,
     /// Rolling resistance \[-\]: largest rolling moment over normal force and effective radius.
     pub rolling_friction: f64,
+    /// Twisting resistance \[-\]: largest moment about the normal over normal force and effective
+    /// radius. Disks cannot twist.
+    pub twisting_friction: f64,
 }
 
 impl Default for Material {
@@ -26,11 +36,13 @@ impl Default for Material {
         Self {
             density: 2650.0,
             normal_stiffness: 1.6e6,
+            elasticity: None,
             stiffness_ratio: 1.0,
             restitution: 0.75,
             damping_ratio: 0.5,
             friction: 0.53,
             rolling_friction: 0.0,
+            twisting_friction: 0.0,
         }
     }
 }
@@ -60,14 +72,26 @@ pub struct PairProperties {
     pub friction: f64,
     /// Rolling resistance \[-\].
     pub rolling_friction: f64,
+    /// Twisting resistance \[-\].
+    pub twisting_friction: f64,
+    /// Effective modulus `E*` \[Pa\] of Hertz contacts; zero without elastic constants.
+    pub effective_modulus: f64,
+    /// Effective shear modulus `G*` \[Pa\] of Hertz contacts.
+    pub effective_shear_modulus: f64,
 }
 
 impl PairProperties {
     /// Mixes two materials: springs act in series and are scaled so that equal materials keep
-    /// their stiffness; of friction, rolling resistance and restitution the lower one holds.
+    /// their stiffness; elastic constants combine as [`Elasticity::effective`] says; of friction,
+    /// rolling and twisting resistance and restitution the lower one holds.
     pub fn mix(a: &Material, b: &Material) -> Self {
         let series = |a: f64, b: f64| if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
+        let elastic = a.elasticity.zip(b.elasticity).map(|(a, b)| a.effective(&b));
+        let (effective_modulus, effective_shear_modulus) = elastic.unwrap_or_default();
         Self {
+            effective_modulus,
+            effective_shear_modulus,
+            twisting_friction: a.twisting_friction.min(b.twisting_friction),
             normal_stiffness: series(a.normal_stiffness, b.normal_stiffness),
             tangential_stiffness: series(
                 a.normal_stiffness * a.stiffness_ratio,
@@ -193,6 +217,23 @@ impl Materials {
         &self.list[id.0 as usize]
     }
 
+    /// All materials, in the order in which they were added.
+    pub fn iter(&self) -> impl Iterator<Item = &Material> {
+        self.list.iter()
+    }
+
+    /// Gives a material its normal stiffness \[N/m\], once the size of the grains is known.
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn set_normal_stiffness(&mut self, id: MaterialId, stiffness: f64) -> Result<(), SetupError> {
+        let material = &mut self.list[id.0 as usize];
+        let changed = Material { normal_stiffness: stiffness, elasticity: None, ..*material };
+        check(&changed)?;
+        material.normal_stiffness = stiffness;
+        Ok(())
+    }
+
     /// Changes the friction of one material \[-\]; stated pairs keep theirs.
     pub fn set_friction(&mut self, id: MaterialId, friction: f64) {
         self.list[id.0 as usize].friction = friction;
@@ -240,13 +281,23 @@ impl std::error::Error for SetupError {}
 fn check(material: &Material) -> Result<(), SetupError> {
     let positive = "positive and finite";
     let at_least_zero = "zero or more, and finite";
+    let elastic = material.elasticity;
+    let Elasticity { young_modulus, poisson_ratio } =
+        elastic.unwrap_or(Elasticity { young_modulus: 1.0, poisson_ratio: 0.0 });
     let rules = [
         ("density", material.density, positive, material.density > 0.0),
-        ("normal stiffness", material.normal_stiffness, positive, material.normal_stiffness > 0.0),
+        ("normal stiffness", material.normal_stiffness, positive, {
+            material.normal_stiffness > 0.0 || (material.normal_stiffness == 0.0 && elastic.is_some())
+        }),
+        ("young modulus", young_modulus, positive, young_modulus > 0.0),
+        ("poisson ratio", poisson_ratio, "above -1 and at most 0.5", {
+            poisson_ratio > -1.0 && poisson_ratio <= 0.5
+        }),
         ("stiffness ratio", material.stiffness_ratio, at_least_zero, material.stiffness_ratio >= 0.0),
         ("damping ratio", material.damping_ratio, at_least_zero, material.damping_ratio >= 0.0),
         ("friction", material.friction, at_least_zero, material.friction >= 0.0),
         ("rolling friction", material.rolling_friction, at_least_zero, material.rolling_friction >= 0.0),
+        ("twisting friction", material.twisting_friction, at_least_zero, material.twisting_friction >= 0.0),
         ("restitution", material.restitution, "above 0 and at most 1", {
             material.restitution > 0.0 && material.restitution <= 1.0
         }),

@@ -16,9 +16,22 @@ pub enum LeverArm {
     Radius,
 }
 
+/// How the normal force grows with the overlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactModel {
+    /// In proportion: springs of [`Material::normal_stiffness`](crate::Material).
+    #[default]
+    Linear,
+    /// Elastic spheres, from [`Material::elasticity`](crate::Material): see
+    /// [`HertzNormal`](crate::HertzNormal), also for what that means for disks.
+    Hertz,
+}
+
 /// Choices of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
+    /// How the normal force grows with the overlap.
+    pub contact: ContactModel,
     /// Whether parting contacts may pull.
     pub tension: Tension,
     /// Where a contact force acts.
@@ -34,6 +47,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            contact: ContactModel::Linear,
             tension: Tension::Cut,
             lever_arm: LeverArm::Exact,
             ledger: false,
@@ -68,6 +82,22 @@ pub(crate) fn check_options(options: &Options, gravity_is_finite: bool) -> Resul
     }
     if !gravity_is_finite {
         return Err(SetupError::new("gravity", f64::NAN, "finite"));
+    }
+    Ok(())
+}
+
+/// Every material has what the contact model asks for.
+pub(crate) fn check_stiffness(materials: &Materials, contact: ContactModel) -> Result<(), SetupError> {
+    for material in materials.iter() {
+        match contact {
+            ContactModel::Linear if material.normal_stiffness <= 0.0 => {
+                return Err(SetupError::new("normal stiffness", 0.0, "positive: contacts are linear"));
+            }
+            ContactModel::Hertz if material.elasticity.is_none() => {
+                return Err(SetupError::new("young modulus", 0.0, "positive: contacts are those of Hertz"));
+            }
+            _ => {}
+        }
     }
     Ok(())
 }

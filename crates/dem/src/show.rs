@@ -3,6 +3,7 @@
 
 use crate::contacts::{Contact, Partner};
 use crate::dem::Dem;
+use crate::kernel::View;
 use crate::ledger::Losses;
 use granular_core::glam::DVec3;
 use granular_core::{Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
@@ -63,12 +64,16 @@ impl<D: Dim> Dem<D> {
     /// present energy and all losses. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        Some(initial + self.injected - self.energies().mechanical() - self.losses.total())
+        let put_in = self.injected + self.cell().map_or(0.0, |cell| cell.work());
+        Some(initial + put_in - self.energies().mechanical() - self.losses.total())
     }
 
     /// Visits all contacts that overlap, in a fixed order.
     pub fn visit_contacts(&self, visit: &mut dyn FnMut(Contact<D>)) {
-        self.pairs.visit(&self.view(), visit);
+        let laboratory = self.laboratory_velocities();
+        let view = self.view();
+        let velocity = laboratory.as_deref().unwrap_or(view.velocity);
+        self.pairs.visit(&View { velocity, start_velocity: velocity, ..view }, visit);
     }
 
     /// Sum of momenta \[kg m/s\].
@@ -94,8 +99,7 @@ impl<D: Dim> Dem<D> {
         let count = self.len();
         let gap = CONNECTED * grains.radius.iter().sum::<f64>() / count.max(1) as f64;
         let mut root: Vec<u32> = (0..count as u32).collect();
-        self.pairs.visit_listed(&mut |first, second| {
-            let distance = (grains.position[first] - grains.position[second]).length();
+        self.pairs.visit_listed(&self.view(), &mut |first, second, distance| {
             if distance < grains.radius[first] + grains.radius[second] + gap {
                 let (a, b) = (find(&mut root, first as u32), find(&mut root, second as u32));
                 root[a.max(b) as usize] = a.min(b);
@@ -145,6 +149,18 @@ impl<D: Dim> Dem<D> {
         counts
     }
 
+    /// Force of all contacts on each grain \[N; N/m in the plane\], walls included.
+    pub fn contact_forces(&self) -> Vec<D::Vec> {
+        let mut forces = vec![D::Vec::ZERO; self.len()];
+        self.visit_contacts(&mut |contact| {
+            forces[contact.first] += contact.force;
+            if let Partner::Grain(second) = contact.partner {
+                forces[second] -= contact.force;
+            }
+        });
+        forces
+    }
+
     /// Stress of each grain \[Pa\], positive in compression: the sum of `arm (x) force` over its
     /// contacts, over its volume \[VOR-7\].
     pub fn grain_stress(&self) -> Vec<SymmetricTensor> {
@@ -190,7 +206,7 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("loss_sliding_at_walls", "J", "energy lost by sliding at walls"),
     ("loss_normal_damping", "J", "energy lost in normal dashpots"),
     ("loss_tangential_damping", "J", "energy lost in tangential dashpots"),
-    ("loss_rolling", "J", "energy lost by rolling resistance"),
+    ("loss_rolling", "J", "energy lost by rolling and twisting resistance"),
     ("energy_residual", "J", "what the energy ledger misses"),
     ("largest_overlap", "%", "largest overlap over the radius of the smaller grain"),
     ("contacts", "1", "number of contacts"),
@@ -207,6 +223,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     ("mass", "kg", "mass"),
     ("contact_count", "1", "contacts of the grain"),
     ("stress", "Pa", "stress of the grain, positive in compression"),
+    ("force", "N", "force of all contacts on the grain"),
 ];
 
 const LINKS: &[(&str, &str, &str)] = &[
@@ -233,6 +250,7 @@ impl<D: Dim> Dem<D> {
                 list.push(Shown { name, unit: "N", meaning: "force on the wall", kind: ShownAs::Number });
             }
         }
+        list.extend(self.cell_catalogue());
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
         list
@@ -241,6 +259,7 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn show_all(&self, sink: &mut dyn FieldSink) {
         self.show_numbers(sink);
         self.show_wall_forces(sink);
+        self.show_cell(sink);
         self.show_fields(sink);
         self.show_links(sink);
     }
@@ -326,6 +345,7 @@ impl<D: Dim> Dem<D> {
                 "id" => sink.field(name, unit, FieldRef::Index(&grains.id)),
                 "mass" => sink.field(name, unit, FieldRef::Scalar(&grains.mass)),
                 "contact_count" => sink.field(name, unit, FieldRef::Index(&self.coordination())),
+                "force" => sink.field(name, unit, D::vector_field(&self.contact_forces())),
                 "stress" => sink.field(name, unit, FieldRef::Tensor(&self.grain_stress())),
                 _ => {}
             }
@@ -339,7 +359,9 @@ impl<D: Dim> Dem<D> {
         let (mut pairs, mut normal, mut force, mut overlap) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         self.visit_contacts(&mut |contact| {
-            if let Partner::Grain(second) = contact.partner {
+            // A link across the faces of a cell would be drawn through all of it.
+            let ordinary = contact.shift == [0; 3];
+            if let (Partner::Grain(second), true) = (contact.partner, ordinary) {
                 pairs.push([contact.first as u32, second as u32]);
                 normal.push(contact.normal_force);
                 force.push(contact.force);

@@ -15,6 +15,9 @@ impl<D: Dim> Dem<D> {
         to.put("gravity", &[self.gravity]);
         to.put("losses", &self.losses.to_array());
         to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
+        if let Some(cell) = self.cell() {
+            cell.save(to);
+        }
         let open: Vec<u8> = self.walls.iter().map(|wall| u8::from(wall.open)).collect();
         to.put("open walls", &open);
         let friction: Vec<f64> =
@@ -32,6 +35,9 @@ impl<D: Dim> Dem<D> {
         self.take_materials(turning);
         self.grains.restore(from)?;
         self.pairs.restore(from, &self.grains)?;
+        if let Some(cell) = self.cell.as_deref_mut() {
+            cell.restore(from)?;
+        }
         self.steps = from.one("steps")?;
         self.last_dt = from.one("last step taken")?;
         self.gravity = from.array_of("gravity", 1)?[0];

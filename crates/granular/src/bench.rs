@@ -7,6 +7,7 @@
 mod column;
 mod figure;
 mod flows;
+mod hertz;
 pub mod lattice;
 mod restitution;
 mod settling;
@@ -25,6 +26,8 @@ use std::path::Path;
 pub enum Precision {
     /// Restitution of a normal impact over the step, for both treatments of tension.
     Restitution,
+    /// The same for elastic grains with damping, disks and spheres.
+    Hertz,
     /// Run-out of a column over stiffness and step, as a mean over seeds.
     Column,
     /// Decaying vortices over cells, Mach number, operator and storage: a minute.
@@ -40,6 +43,7 @@ impl Precision {
     pub fn name(self) -> &'static str {
         match self {
             Self::Restitution => "restitution",
+            Self::Hertz => "hertz",
             Self::Column => "column",
             Self::TaylorGreen => "taylor-green",
             Self::Cavity => "cavity",
@@ -55,6 +59,7 @@ impl Precision {
 pub fn precision(case: Precision) -> Result<Study, Failure> {
     match case {
         Precision::Restitution => restitution::study(),
+        Precision::Hertz => hertz::study(),
         Precision::Column => column::study(),
         Precision::TaylorGreen => flows::taylor_green(),
         Precision::Cavity => flows::cavity(),

@@ -8,6 +8,7 @@ use granular::failure::Failure;
 use granular::run::Interrupt;
 use granular::scene_file::SceneText;
 use granular::{check, folder, run};
+use granular_core::Shown;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -309,15 +310,17 @@ fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
 /// Lists all that a scene can show.
 fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
     let (_, model) = check::read(&SceneText::read(path)?)?;
-    let list = model.simulation.solver().shown();
+    let solver = model.simulation.solver();
+    let mut list: Vec<_> = solver.shown().into_iter().map(|s| (format!("{:?}", s.kind), s)).collect();
+    list.extend(granular::model::shown_on_grids(solver).into_iter().map(|s| ("Grid".to_owned(), s)));
     let rows: Vec<Value> = list
         .iter()
-        .map(|s| json!({ "name": s.name, "unit": s.unit, "kind": format!("{:?}", s.kind), "meaning": s.meaning }))
+        .map(|(kind, s)| json!({ "name": s.name, "unit": s.unit, "kind": kind, "meaning": s.meaning }))
         .collect();
     show(common, &json!(rows), || {
-        list.iter()
-            .map(|s| format!("{:<8} {:<28} {:<8} {}\n", format!("{:?}", s.kind), s.name, s.unit, s.meaning))
-            .collect()
+        let line =
+            |(kind, s): &(String, Shown)| format!("{kind:<8} {:<28} {:<8} {}\n", s.name, s.unit, s.meaning);
+        list.iter().map(line).collect()
     });
     Ok(())
 }

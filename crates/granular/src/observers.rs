@@ -3,8 +3,11 @@
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod profile;
+mod source;
+mod tracks;
 
 pub(crate) use profile::Line;
+pub(crate) use source::Grid;
 
 use crate::failure::Failure;
 use crate::scene::{EverySpec, Output, Writer};
@@ -12,7 +15,8 @@ use granular_core::{
     Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, Shown, ShownAs, Simulation,
     SnapshotError,
 };
-use granular_io::{Collection, Frame, TableWriter, write_fields, write_links_vtp};
+use granular_io::{Collection, TableWriter, write_fields, write_links_vtp};
+use source::Source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,16 +39,22 @@ pub(crate) fn of_output(
     if let Some(parent) = path.parent() {
         std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
     }
+    let source = Source::of(output.write.grid(), simulation);
     let observer: Box<dyn Observer> = match &output.write {
         Writer::Table { probes, .. } => Box::new(TableObserver::new(path, probes, shown, fresh)?),
-        Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, fields, false, fresh)?),
-        Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, fields, true, fresh)?),
+        Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, source, fields, false, fresh)?),
+        Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, source, fields, true, fresh)?),
         Writer::Profile { from, to, points, fields, .. } => {
             let line = profile::Line::of(from, to, *points);
-            Box::new(profile::ProfileObserver::new(path, line, fields, simulation, fresh)?)
+            Box::new(profile::ProfileObserver::new(path, (line, source), fields, simulation, fresh)?)
+        }
+        Writer::Tracks { grains, fields, .. } => {
+            Box::new(tracks::TracksObserver::new(path, grains, fields, simulation, fresh)?)
         }
         #[cfg(feature = "hdf5")]
-        Writer::Hdf5 { fields, .. } => Box::new(hdf5::Hdf5Observer::new(&path, fields, simulation, fresh)?),
+        Writer::Hdf5 { fields, .. } => {
+            Box::new(hdf5::Hdf5Observer::new(&path, source, fields, simulation, fresh)?)
+        }
         #[cfg(not(feature = "hdf5"))]
         Writer::Hdf5 { path, .. } => {
             let reason = "this program was built without the cargo feature `hdf5`; use Fields instead";
@@ -122,25 +132,30 @@ impl Observer for TableObserver {
 /// One file per look, listed in a `.pvd`.
 struct FilesObserver {
     stem: PathBuf,
+    source: Source,
     names: Vec<String>,
     links: bool,
     collection: Option<Collection>,
 }
 
 impl FilesObserver {
-    fn new(stem: PathBuf, names: &[String], links: bool, fresh: bool) -> Result<Self, Failure> {
+    fn new(
+        stem: PathBuf,
+        source: Source,
+        names: &[String],
+        links: bool,
+        fresh: bool,
+    ) -> Result<Self, Failure> {
         let collection = if fresh { Some(Collection::create(&stem.with_extension("pvd"))?) } else { None };
-        Ok(Self { stem, names: names.to_vec(), links, collection })
+        Ok(Self { stem, source, names: names.to_vec(), links, collection })
     }
 }
 
 impl Observer for FilesObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let Some(collection) = &mut self.collection else { return Ok(Flow::Continue) };
-        let mut frame = Frame::wanting(self.names.iter().map(String::as_str));
-        let solver = simulation.solver();
-        solver.show(&mut frame);
-        let (time, location) = (simulation.clock().time(), solver.location());
+        let frame = self.source.frame(&self.names, simulation);
+        let (time, location) = (simulation.clock().time(), self.source.location(simulation));
         let name = self.stem.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let folder = self.stem.parent().unwrap_or(Path::new("."));
         let numbered = format!("{name}_{:06}", collection.len());

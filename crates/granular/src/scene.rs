@@ -6,7 +6,7 @@ pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
 
-pub use outputs::{EverySpec, FigureSpec, Output, ReferenceCurve, Writer};
+pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, Length, Time};

@@ -13,13 +13,16 @@
 
 pub(crate) mod chance;
 mod claims;
+mod coarse;
 pub(crate) mod collapse;
 mod conservation;
 pub(crate) mod fit;
 pub(crate) mod fluid;
 mod grading;
+pub(crate) mod hertz;
 pub(crate) mod impact;
 mod incline;
+mod laws;
 mod oblique;
 pub(crate) mod parallel;
 mod plane;
@@ -28,6 +31,7 @@ pub(crate) mod restitution;
 mod rolling;
 mod row;
 pub mod stability;
+pub(crate) mod strike;
 mod table;
 
 pub use row::{Row, Tier};
@@ -67,12 +71,15 @@ pub const CASES: &[Case] = &[
         run: restitution::error,
     },
     Case { name: "contact_time", about: "contact time and largest overlap", run: restitution::contact },
+    Case { name: "hertz_impact", about: "impacts of elastic grains and their order", run: hertz::impact },
+    Case { name: "chung_ooi", about: "benchmark impacts 1 to 4 and 7", run: hertz::chung_ooi },
     Case { name: "oblique_impact", about: "gross sliding and sticking on a plane", run: oblique::run },
     Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
+    Case { name: "coarse_graining", about: "continuum fields from grains", run: coarse::run },
     Case {
         name: "poiseuille",
         about: "flow between plates, steady and started",

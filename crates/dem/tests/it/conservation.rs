@@ -2,7 +2,7 @@
 
 use crate::sample::{Lattice, Random, free};
 use granular_core::{D2, D3, Dim, Linear, Solver};
-use granular_dem::{Dem, LeverArm, Material, Materials, Options, Tension};
+use granular_dem::{ContactModel, Dem, Elasticity, LeverArm, Material, Materials, Options, Tension};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -22,7 +22,9 @@ pub(crate) struct Case {
     pub(crate) restitution: f64,
     pub(crate) friction: f64,
     pub(crate) rolling: f64,
+    pub(crate) twisting: f64,
     pub(crate) tension: Tension,
+    pub(crate) contact: ContactModel,
 }
 
 impl Case {
@@ -31,6 +33,8 @@ impl Case {
             restitution: self.restitution,
             friction: self.friction,
             rolling_friction: self.rolling,
+            twisting_friction: self.twisting,
+            elasticity: Some(Elasticity { young_modulus: 5e10, poisson_ratio: 0.25 }),
             ..Material::default()
         }
     }
@@ -38,14 +42,18 @@ impl Case {
 
 pub(crate) fn any_case() -> impl Strategy<Value = Case> {
     let tension = prop_oneof![Just(Tension::Cut), Just(Tension::Kept)];
-    let rolling = prop_oneof![Just(0.0), 0.01..0.5];
-    (any::<u64>(), 0.1..=1.0, 0.05..2.0, rolling, tension).prop_map(
-        |(seed, restitution, friction, rolling, tension)| Case {
+    let contact = prop_oneof![Just(ContactModel::Linear), Just(ContactModel::Hertz)];
+    let resistance = || prop_oneof![Just(0.0), 0.01..0.5];
+    let choices = (tension, contact);
+    (any::<u64>(), 0.1..=1.0, 0.05..2.0, resistance(), resistance(), choices).prop_map(
+        |(seed, restitution, friction, rolling, twisting, (tension, contact))| Case {
             seed,
             restitution,
             friction,
             rolling,
+            twisting,
             tension,
+            contact,
         },
     )
 }
@@ -76,7 +84,11 @@ fn cloud<D: Dim>(case: Case, lever_arm: LeverArm) -> Dem<D> {
         grain.velocity += (middle - grain.position) * (1000.0 * haste::<D>());
         grain.spin = random.spin::<D>(1000.0 * haste::<D>());
     }
-    free(materials, grains, Options { lever_arm, tension: case.tension, ..Options::default() })
+    free(
+        materials,
+        grains,
+        Options { lever_arm, tension: case.tension, contact: case.contact, ..Options::default() },
+    )
 }
 
 /// Change of momentum and of angular momentum over the sums of their sizes, after collisions.

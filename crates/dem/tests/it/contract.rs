@@ -4,7 +4,7 @@
 use crate::sample::{Lattice, down};
 use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, Section, Solver, contract_tests};
-use granular_dem::{Dem, Dem2, Material, Materials, Options, Setup, Tension, Wall};
+use granular_dem::{ContactModel, Dem, Dem2, Elasticity, Material, Materials, Options, Setup, Tension, Wall};
 
 /// A box of moving grains in touch, with lists so short that they are rebuilt every few steps.
 fn boxed<D: Dim>(lattice: Lattice, material: Material, options: Options) -> Dem<D> {
@@ -35,6 +35,25 @@ fn resisting() -> Material {
 
 fn with_ledger() -> Options {
     Options { ledger: true, ..short_lists() }
+}
+
+/// Elastic, so that a contact lasts about as long as that of the linear law.
+fn elastic(material: Material) -> Material {
+    let elasticity = Some(Elasticity { young_modulus: 4e10, poisson_ratio: 0.25 });
+    Material { elasticity, normal_stiffness: 0.0, ..material }
+}
+
+fn hertz(options: Options) -> Options {
+    Options { contact: ContactModel::Hertz, ..options }
+}
+
+fn twisting() -> Material {
+    Material { twisting_friction: 0.1, ..resisting() }
+}
+
+/// A small box of spheres.
+fn few() -> Lattice {
+    Lattice { side: 10, speed: 10.0, ..Lattice::default() }
 }
 
 /// Disks of two materials in a box with an inclined segment, a block and an open gate, all of
@@ -108,6 +127,43 @@ contract_tests!(
 contract_tests!(
     spheres_without_friction,
     || boxed::<D3>(Lattice { side: 10, speed: 10.0, ..Lattice::default() }, smooth(), short_lists()),
+    SPHERE_STEP,
+    warm_up = 600
+);
+
+contract_tests!(
+    spheres_with_twisting_resistance,
+    || boxed::<D3>(few(), twisting(), with_ledger()),
+    SPHERE_STEP,
+    warm_up = 600
+);
+contract_tests!(
+    hertz_disks_with_friction,
+    || boxed::<D2>(Lattice::default(), elastic(Material::default()), hertz(with_ledger())),
+    DISK_STEP,
+    warm_up = 600
+);
+contract_tests!(
+    hertz_disks_with_rolling_resistance,
+    || boxed::<D2>(Lattice::default(), elastic(resisting()), hertz(short_lists())),
+    DISK_STEP,
+    warm_up = 600
+);
+contract_tests!(
+    hertz_spheres_without_friction,
+    || boxed::<D3>(few(), elastic(smooth()), hertz(with_ledger())),
+    SPHERE_STEP,
+    warm_up = 600
+);
+contract_tests!(
+    hertz_spheres_with_friction,
+    || boxed::<D3>(few(), elastic(Material::default()), hertz(short_lists())),
+    SPHERE_STEP,
+    warm_up = 600
+);
+contract_tests!(
+    hertz_spheres_with_twisting_resistance,
+    || boxed::<D3>(few(), elastic(twisting()), hertz(with_ledger())),
     SPHERE_STEP,
     warm_up = 600
 );

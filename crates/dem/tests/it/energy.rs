@@ -5,8 +5,8 @@ use crate::sample::{Lattice, Random, down};
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
 use granular_dem::law::Meeting;
 use granular_dem::{
-    ContactLaw, Dem, LinearFrictional, LinearRolling, Materials, Options, PairProperties, Setup, Tally,
-    Tension,
+    ContactLaw, ContactModel, Dem, LinearFrictional, LinearRolling, Materials, Options, PairProperties,
+    Setup, Tally, Tension,
 };
 use proptest::prelude::*;
 
@@ -27,7 +27,8 @@ fn soup<D: Dim>(case: Case, share: f64) -> (Dem<D>, f64) {
     grains
         .iter_mut()
         .for_each(|grain| grain.spin = random.spin::<D>(if case.friction > 0.0 { 1000.0 } else { 0.0 }));
-    let options = Options { ledger: true, tension: case.tension, ..Options::default() };
+    let options =
+        Options { ledger: true, tension: case.tension, contact: case.contact, ..Options::default() };
     let setup = Setup { materials, grains, walls, gravity: down::<D>(9.81), options };
     let dem = Dem::<D>::new(setup).unwrap();
     let dt = dem.recommended_step() * share;
@@ -65,23 +66,41 @@ proptest! {
     }
 }
 
+/// Some damping, and neither friction nor resistance.
+pub(crate) const QUIET: Case = Case {
+    seed: 0,
+    restitution: 0.7,
+    friction: 0.0,
+    rolling: 0.0,
+    twisting: 0.0,
+    tension: Tension::Cut,
+    contact: ContactModel::Linear,
+};
+
 #[test]
 fn the_residual_falls_with_the_step() {
     for tension in [Tension::Cut, Tension::Kept] {
         // Without friction with the square of the step. Where friction begins and ends to slide,
         // and where the spring of a contact that ends is dropped, the books are coarser.
-        for (friction, least) in [(0.0, 1.9), (0.1, 1.3), (0.5, 1.2)] {
+        for (friction, least, contact) in [
+            (0.0, 1.9, ContactModel::Linear),
+            (0.1, 1.3, ContactModel::Linear),
+            (0.5, 1.2, ContactModel::Linear),
+            (0.0, 1.9, ContactModel::Hertz),
+            (0.1, 1.3, ContactModel::Hertz),
+            (0.5, 1.2, ContactModel::Hertz),
+        ] {
             // The mean over samples: a single residual may pass through zero.
             let mean = |share: f64| {
                 let one = |seed| {
-                    let case = Case { seed, restitution: 0.7, friction, rolling: 0.0, tension };
+                    let case = Case { seed, friction, tension, contact, ..QUIET };
                     books::<D2>(case, share, 1.5e-3, 10).0
                 };
                 (0..6).map(one).sum::<f64>() / 6.0
             };
             let (coarse, fine) = (mean(1.0), mean(0.0625));
             let order = (coarse / fine).ln() / 16.0_f64.ln();
-            println!("{tension:?} friction {friction}: {coarse:.2e} {fine:.2e} order {order:.2}");
+            println!("{contact:?} {tension:?} friction {friction}: {coarse:.2e} {fine:.2e} order {order:.2}");
             assert!(coarse < 5e-3 && fine < 1e-4, "{tension:?} {friction}: {coarse:e} {fine:e}");
             assert!(order > least, "{tension:?} {friction}: order {order}");
         }
@@ -105,6 +124,9 @@ fn properties(friction: f64, damping_ratio: f64) -> PairProperties {
         damping_ratio,
         friction,
         rolling_friction: 0.2,
+        twisting_friction: 0.2,
+        effective_modulus: 1e9,
+        effective_shear_modulus: 3e8,
     }
 }
 
@@ -128,6 +150,8 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
         start_slip: <D::Spin as Linear>::ZERO,
         start_roll: <D::Spin as Linear>::ZERO,
         twist: 0.0,
+        twisting: 0.0,
+        start_twisting: 0.0,
         effective_mass: 1e-3,
         effective_radius: 1e-3,
         dt,
@@ -157,7 +181,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
     cycle
 }
 
-fn lost(tally: &Tally<true>) -> f64 {
+pub(crate) fn lost(tally: &Tally<true>) -> f64 {
     // The tally prints what it holds; its sums are not public.
     let text = format!("{tally:?}");
     let number = |part: &str| {

@@ -51,7 +51,7 @@ fn root_mean_square(restitution: f64, tension: Tension, phase_step: f64) -> f64 
 }
 
 /// Slope of a straight line through the logarithms.
-fn order(steps: &[f64], errors: &[f64]) -> f64 {
+pub(crate) fn order(steps: &[f64], errors: &[f64]) -> f64 {
     let (x, y): (Vec<f64>, Vec<f64>) = steps.iter().zip(errors).map(|(h, e)| (h.ln(), e.ln())).unzip();
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
     let (mx, my) = (mean(&x), mean(&y));

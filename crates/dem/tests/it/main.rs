@@ -3,11 +3,14 @@
 // Outside `#[test]` functions clippy does not see that this is a test.
 #![allow(clippy::unwrap_used)]
 
+mod cell;
+mod coarse;
 mod conservation;
 mod contract;
 mod energy;
 mod extremes;
 mod frames;
+mod hertz;
 mod impact;
 mod incline;
 mod lists;
@@ -16,6 +19,7 @@ mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod twisting;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =

@@ -2,7 +2,7 @@
 
 use crate::sample::{Lattice, free};
 use granular_core::{D2, D3, Dim, Section, Solver};
-use granular_dem::{Dem, Material, Materials, Options};
+use granular_dem::{ContactModel, Dem, Elasticity, Material, Materials, Options};
 
 /// Grains that touch nothing, so that lists hold no pairs.
 fn apart<D: Dim>(material: Material, two_materials: bool) -> Dem<D> {
@@ -66,10 +66,14 @@ fn bytes_per_grain_are_as_expected() {
 #[test]
 fn one_contact_remembers_as_little_as_its_law_needs() {
     fn remembered<D: Dim>(material: Material) -> usize {
+        remembered_by::<D>(material, ContactModel::Linear)
+    }
+    fn remembered_by<D: Dim>(material: Material, contact: ContactModel) -> usize {
         let mut materials = Materials::new();
         let glass = materials.add(material).unwrap();
         let lattice = Lattice { side: 6, ..Lattice::default() };
-        let mut dem = free::<D>(materials, lattice.grains(&[glass]), Options::default());
+        let options = Options { contact, ..Options::default() };
+        let mut dem = free::<D>(materials, lattice.grains(&[glass]), options);
         dem.advance(dem.recommended_step(), 10).unwrap();
         let pairs = bytes_of_entry(&dem, "contact pairs") / 8;
         bytes_of_entry(&dem, "contact memories").checked_div(pairs).unwrap_or(0)
@@ -78,4 +82,21 @@ fn one_contact_remembers_as_little_as_its_law_needs() {
     let rough = Material::default();
     assert_eq!([remembered::<D2>(rough), remembered::<D3>(rough)], [8, 24]);
     assert_eq!([remembered::<D2>(resisting()), remembered::<D3>(resisting())], [16, 48]);
+    // Disks cannot twist.
+    let twisting = Material { twisting_friction: 0.1, ..resisting() };
+    assert_eq!([remembered::<D2>(twisting), remembered::<D3>(twisting)], [16, 56]);
+    assert!(apart::<D2>(twisting, false).memory().left_out.iter().any(|text| text.starts_with("twisting")));
+    let elastic = |of: Material| Material {
+        elasticity: Some(Elasticity { young_modulus: 5e10, poisson_ratio: 0.2 }),
+        ..of
+    };
+    for (material, plane, space) in
+        [(smooth(), 0, 0), (rough, 16, 32), (resisting(), 24, 56), (twisting, 24, 64)]
+    {
+        let bytes = [
+            remembered_by::<D2>(elastic(material), ContactModel::Hertz),
+            remembered_by::<D3>(elastic(material), ContactModel::Hertz),
+        ];
+        assert_eq!(bytes, [plane, space]);
+    }
 }

@@ -15,7 +15,7 @@ const RESTITUTION: f64 = 0.75;
 /// Random gaps that an error is taken over, and that are timed.
 const GAPS: usize = 256;
 /// Rounds that the wall time is the median of.
-const ROUNDS: usize = 15;
+pub(super) const ROUNDS: usize = 15;
 /// A round lasts at least this long.
 const ROUND: Duration = Duration::from_millis(20);
 
@@ -26,7 +26,7 @@ pub(super) fn study() -> Result<Study, Failure> {
         let mut line = Vec::new();
         for phase_step in PHASE_STEPS {
             let impact = Impact { restitution: RESTITUTION, tension, phase_step };
-            let point = measure(impact, scheme)?;
+            let point = measure(&impact, scheme)?;
             line.push((point.dt, point.error));
             points.push(point);
         }
@@ -44,13 +44,43 @@ pub(super) fn study() -> Result<Study, Failure> {
     Ok(Study { case: "restitution", error, resolution: CONTACT, points, orders, notes }.mark_front())
 }
 
-fn measure(impact: Impact, scheme: &str) -> Result<Point, Failure> {
-    let errors = errors(impact, GAPS)?;
+/// An impact whose restitution is measured and timed.
+pub(super) trait Trial {
+    /// Step \[s\].
+    fn dt(&self) -> f64;
+    /// Steps in a contact.
+    fn resolution(&self) -> f64;
+    /// Errors over so many random gaps.
+    fn errors(&self, count: usize) -> Result<Vec<f64>, StepError>;
+    /// The simulation from a gap of so many steps, and how many it takes.
+    fn begin(&self, gap: f64) -> (Box<dyn Solver>, u64);
+}
+
+impl Trial for Impact {
+    fn dt(&self) -> f64 {
+        self.dt()
+    }
+
+    fn resolution(&self) -> f64 {
+        self.contact_time() / self.dt()
+    }
+
+    fn errors(&self, count: usize) -> Result<Vec<f64>, StepError> {
+        errors(*self, count)
+    }
+
+    fn begin(&self, gap: f64) -> (Box<dyn Solver>, u64) {
+        (Box::new(self.disks(gap)), self.steps(gap))
+    }
+}
+
+pub(super) fn measure(impact: &dyn Trial, scheme: &str) -> Result<Point, Failure> {
+    let errors = impact.errors(GAPS)?;
     let error = root_mean_square(&errors);
     let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
     Ok(Point {
         scheme: scheme.to_owned(),
-        resolution: impact.contact_time() / impact.dt(),
+        resolution: impact.resolution(),
         dt: impact.dt(),
         error,
         // From the standard error of the mean square.
@@ -62,16 +92,16 @@ fn measure(impact: Impact, scheme: &str) -> Result<Point, Failure> {
 }
 
 /// Wall time of the steps of one impact. Set-up is not counted.
-fn seconds(impact: Impact) -> Result<f64, StepError> {
+fn seconds(impact: &dyn Trial) -> Result<f64, StepError> {
     let gaps = gaps(64);
     let mut rounds = Vec::new();
     for _ in 0..ROUNDS {
         let (mut spent, mut impacts) = (Duration::ZERO, 0);
         while spent < ROUND {
-            let mut pairs: Vec<_> = gaps.iter().map(|&gap| (impact.disks(gap), impact.steps(gap))).collect();
+            let mut pairs: Vec<_> = gaps.iter().map(|&gap| impact.begin(gap)).collect();
             let begun = Instant::now();
-            for (disks, steps) in &mut pairs {
-                disks.advance(impact.dt(), *steps)?;
+            for (grains, steps) in &mut pairs {
+                grains.advance(impact.dt(), *steps)?;
             }
             spent += begun.elapsed();
             impacts += pairs.len();

@@ -32,6 +32,8 @@ pub(super) enum Bench {
 pub(super) enum Case {
     /// Restitution of a normal impact over the step.
     Restitution,
+    /// The same for elastic disks and spheres with damping.
+    Hertz,
     /// Run-out of a column over stiffness and step; takes minutes.
     Column,
     /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
@@ -80,6 +82,7 @@ impl Bench {
             Self::Precision { case, out } => {
                 let case = match case {
                     Case::Restitution => Precision::Restitution,
+                    Case::Hertz => Precision::Hertz,
                     Case::Column => Precision::Column,
                     Case::TaylorGreen => Precision::TaylorGreen,
                     Case::Cavity => Precision::Cavity,

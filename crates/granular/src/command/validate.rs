@@ -36,10 +36,10 @@ enum Study {
         /// Finer; takes many minutes.
         #[arg(long)]
         full: bool,
-        /// Collision operators; all by default.
+        /// Collision operators of `lbm`; all by default.
         #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = operators())]
         operator: Vec<String>,
-        /// Flows; all by default.
+        /// Flows of `lbm`; all by default.
         #[arg(long, value_delimiter = ',', value_name = "LIST", value_parser = flows())]
         flow: Vec<String>,
     },
@@ -48,6 +48,8 @@ enum Study {
 /// Solvers whose limits are studied.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Solver {
+    /// Discrete element method.
+    Dem,
     /// Lattice Boltzmann method.
     Lbm,
 }
@@ -66,9 +68,9 @@ fn effort(full: bool) -> Effort {
 
 impl Validate {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
-        if let Some(Study::Stability { solver: Solver::Lbm, full, operator, flow }) = self.study {
+        if let Some(Study::Stability { solver, full, operator, flow }) = self.study {
             let request = stability::Request { effort: effort(full), operators: operator, flows: flow };
-            let rows = stability::lbm(&request)?;
+            let rows = limits(solver, &request)?;
             show(common, &json!(rows), || stability::table(&rows));
             return stability::verdict(&rows);
         }
@@ -81,5 +83,17 @@ impl Validate {
         }
         show(common, &json!(rows), || validate::table(&rows));
         validate::verdict(&rows)
+    }
+}
+
+fn limits(solver: Solver, request: &stability::Request) -> Result<Vec<stability::Row>, Failure> {
+    match solver {
+        Solver::Lbm => stability::lbm(request),
+        Solver::Dem if request.operators.is_empty() && request.flows.is_empty() => {
+            stability::dem(request.effort)
+        }
+        Solver::Dem => {
+            Err(Failure::Io("--operator and --flow are of `lbm`; leave them out for `dem`".to_owned()))
+        }
     }
 }

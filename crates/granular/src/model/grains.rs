@@ -1,5 +1,7 @@
 //! Grains and walls for the discrete element method.
 
+mod stiffness;
+
 use super::walls::{self, Beside};
 use super::{Action, Model, Problems, nearest, outputs, sample};
 use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
@@ -16,13 +18,19 @@ use std::collections::BTreeMap;
 pub(crate) struct NamedMaterials {
     pub(crate) list: Materials,
     /// None for a material that was refused, so that its users are not blamed too.
-    ids: BTreeMap<String, Option<MaterialId>>,
+    pub(super) ids: BTreeMap<String, Option<MaterialId>>,
 }
 
 impl NamedMaterials {
-    fn of(scene: &Scene, problems: &mut Problems) -> Self {
+    fn of(scene: &Scene, spec: &DemSpec, plane: bool, problems: &mut Problems) -> Self {
         let mut named = Self::default();
+        let contact = spec.contact;
         for (name, &spec) in &scene.materials {
+            if !stiffness::is_stated(&format!("materials.{}", quoted(name)), &spec, contact, plane, problems)
+            {
+                named.ids.insert(name.clone(), None);
+                continue;
+            }
             let added = named.list.add(spec.into()).map_err(|error| {
                 let key = error.what.replace(' ', "_");
                 problems.add(format!("materials.{}.{key}", quoted(name)), error.value, error.allowed, "");
@@ -45,7 +53,7 @@ impl NamedMaterials {
 }
 
 /// A key as a scene path writes it: one with a dot needs quotes.
-fn quoted(key: &str) -> String {
+pub(super) fn quoted(key: &str) -> String {
     if key.contains(['.', '=', '[']) { format!("\"{key}\"") } else { key.to_owned() }
 }
 
@@ -64,7 +72,7 @@ pub(super) fn build<D: Dim>(
     } else {
         problems.vector::<D, _>("gravity", &scene.gravity)
     };
-    let materials = NamedMaterials::of(scene, &mut problems);
+    let mut materials = NamedMaterials::of(scene, spec, D::N == 2, &mut problems);
     let sample = match &scene.sample {
         Some(sample) => sample::grains::<D>(sample, &materials, &mut problems),
         None => {
@@ -72,6 +80,9 @@ pub(super) fn build<D: Dim>(
             None
         }
     };
+    if let Some(sample) = &sample {
+        stiffness::derive::<D>(scene, &mut materials, &sample.grains, &mut problems);
+    }
     let column = sample.as_ref().and_then(|sample| sample.column);
     // A column that cannot be built has been blamed already; the walls beside it are not.
     let beside = match (&sample, &scene.sample) {

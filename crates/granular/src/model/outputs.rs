@@ -2,9 +2,9 @@
 
 use super::{Problems, nearest};
 use crate::folder::RESERVED;
-use crate::observers::Line;
-use crate::scene::{EverySpec, FigureSpec, Scene, Writer};
-use granular_core::{Location, ShownAs, Solver};
+use crate::observers::{Grid, Line};
+use crate::scene::{Chosen, EverySpec, FigureSpec, Scene, Writer};
+use granular_core::{Location, Shown, ShownAs, Solver};
 use std::path::{Component, Path};
 
 /// Checks of schedules and files.
@@ -32,7 +32,9 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         let path = output.write.path();
         if check_path(&place, path, problems) {
             let files = match output.write {
-                Writer::Table { .. } | Writer::Profile { .. } => vec![path.to_owned()],
+                Writer::Table { .. } | Writer::Profile { .. } | Writer::Tracks { .. } => {
+                    vec![path.to_owned()]
+                }
                 Writer::Fields { .. } | Writer::Contacts { .. } => {
                     vec![path.to_owned(), format!("{path}.pvd")]
                 }
@@ -93,19 +95,25 @@ fn claim(place: &str, path: &str, files: Vec<String>, taken: &mut Vec<Vec<String
     taken.push(files);
 }
 
+/// What outputs with a `grid` can show of a solver; nothing unless it has grains.
+pub fn shown_on_grids(solver: &dyn Solver) -> Vec<Shown> {
+    if matches!(solver.location(), Location::Points(_)) { Grid::shown() } else { Vec::new() }
+}
+
 /// Checks of probes, fields and columns.
 pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
-    let shown = solver.shown();
+    let (own, averaged) = (solver.shown(), Grid::shown());
     let mut unknown = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
         let (key, kind) = match &output.write {
             Writer::Table { .. } => ("probes", ShownAs::Number),
-            Writer::Fields { .. } | Writer::Profile { .. } | Writer::Hdf5 { .. } => {
+            Writer::Fields { .. } | Writer::Profile { .. } | Writer::Tracks { .. } | Writer::Hdf5 { .. } => {
                 ("fields", ShownAs::Field)
             }
             Writer::Contacts { .. } => ("fields", ShownAs::Link),
         };
         let names = output.write.names();
+        let shown = if output.write.grid().is_some() { &averaged } else { &own };
         let known: Vec<&str> = shown.iter().filter(|s| s.kind == kind).map(|s| s.name.as_str()).collect();
         for (n, name) in names.iter().enumerate() {
             let path = format!("outputs.{k}.write.{key}.{n}");
@@ -118,8 +126,53 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Pro
             }
         }
     }
+    check_grids(scene, solver, problems);
     check_lines(scene, solver, problems);
+    check_tracks(scene, solver, problems);
     check_figures(scene, &unknown, problems);
+}
+
+/// Whether grids of outputs are of grains and make sense.
+fn check_grids(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+    for (k, output) in scene.outputs.iter().enumerate() {
+        if let Some(Err(error)) = output.write.grid().map(|grid| Grid::of(grid, solver)) {
+            problems.add(format!("outputs.{k}.write.{}", error.key), error.value, error.allowed, "");
+        }
+    }
+}
+
+/// Whether tracks are of grains that there are.
+fn check_tracks(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+    for (k, output) in scene.outputs.iter().enumerate() {
+        let Writer::Tracks { grains, .. } = &output.write else { continue };
+        let path = format!("outputs.{k}.write");
+        if matches!(solver.location(), Location::Grid { .. }) {
+            problems.add(path, "Tracks of a fluid", "Tracks of grains", "Fields writes all cells");
+            continue;
+        }
+        let count = solver.size().0;
+        match grains {
+            Chosen::Every(0) => problems.add(format!("{path}.grains"), 0, "1 or more", "1 takes all grains"),
+            Chosen::Ids(ids) if ids.is_empty() => {
+                problems.add(format!("{path}.grains"), "empty", "at least one identifier", "");
+            }
+            Chosen::Ids(ids) => {
+                if let Some(id) = ids.iter().find(|&&id| id as usize >= count) {
+                    let allowed = format!("identifiers of the {count} grains, from 0 on");
+                    problems.add(format!("{path}.grains"), id, allowed, "");
+                }
+            }
+            Chosen::Every(_) => {}
+        }
+    }
+}
+
+/// Where the fields of an output live.
+fn location_of<'a>(write: &Writer, solver: &'a dyn Solver) -> Option<Location<'a>> {
+    match write.grid() {
+        Some(grid) => Grid::of(grid, solver).ok().map(|grid| grid.location()),
+        None => Some(solver.location()),
+    }
 }
 
 /// Whether lines of profiles lie in the grid.
@@ -127,8 +180,11 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
     for (k, output) in scene.outputs.iter().enumerate() {
         let Writer::Profile { from, to, points, .. } = &output.write else { continue };
         let path = format!("outputs.{k}.write");
-        let Location::Grid { origin, spacing, cells } = solver.location() else {
-            problems.add(path, "a Profile of grains", "a Profile of a fluid", "Fields writes all grains");
+        // A grid that makes no sense has been blamed.
+        let Some(location) = location_of(&output.write, solver) else { continue };
+        let Location::Grid { origin, spacing, cells } = location else {
+            let hint = "add `grid` to average the grains; Fields writes all of them";
+            problems.add(path, "a Profile of grains", "a Profile of a fluid, or one with a `grid`", hint);
             continue;
         };
         let axes = if cells[2] > 1 { 3 } else { 2 };
@@ -151,7 +207,9 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
             .copied()
             .find(|point| (0..axes).any(|axis| !(reach(axis).0..=reach(axis).1).contains(&point[axis])));
         if let Some([x, y, z]) = outside {
-            problems.add(path, format!("({x}, {y}, {z}) m, outside the fluid"), "a line in the fluid", "");
+            let place = if output.write.grid().is_some() { "grid" } else { "fluid" };
+            let value = format!("({x}, {y}, {z}) m, outside the {place}");
+            problems.add(path, value, format!("a line in the {place}"), "");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One temporal `.vtkhdf` file.
 
+use super::source::Source;
 use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
 use granular_core::Location;
 use granular_io::{Frame, IoError, VtkHdfGrid, VtkHdfPoints};
@@ -29,6 +30,7 @@ impl File {
 
 pub(super) struct Hdf5Observer {
     path: PathBuf,
+    source: Source,
     fields: Vec<String>,
     /// The grid on which the fields are; none for points, which move.
     grid: Option<Location<'static>>,
@@ -38,11 +40,12 @@ pub(super) struct Hdf5Observer {
 impl Hdf5Observer {
     pub(super) fn new(
         stem: &Path,
+        source: Source,
         fields: &[String],
         simulation: &Simulation,
         fresh: bool,
     ) -> Result<Self, Failure> {
-        let grid = match simulation.solver().location() {
+        let grid = match source.location(simulation) {
             Location::Grid { origin, spacing, cells } => Some(Location::Grid { origin, spacing, cells }),
             Location::Points(_) => None,
         };
@@ -52,16 +55,15 @@ impl Hdf5Observer {
             Some(grid) => Some(File::Grid(VtkHdfGrid::create(&path, grid)?)),
             None => Some(File::Points(VtkHdfPoints::create(&path)?)),
         };
-        Ok(Self { path, fields: fields.to_vec(), grid, file })
+        Ok(Self { path, source, fields: fields.to_vec(), grid, file })
     }
 }
 
 impl Observer for Hdf5Observer {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let mut frame = Frame::wanting(self.fields.iter().map(String::as_str));
-        simulation.solver().show(&mut frame);
+        let frame = self.source.frame(&self.fields, simulation);
         if let Some(file) = &mut self.file {
-            file.append(&simulation.solver().location(), &frame, simulation.clock().time())?;
+            file.append(&self.source.location(simulation), &frame, simulation.clock().time())?;
         }
         Ok(Flow::Continue)
     }

@@ -1,5 +1,6 @@
 //! Fields of a grid along a line, as rows of a table.
 
+use super::source::Source;
 use crate::failure::Failure;
 use granular_core::units::Length;
 use granular_core::{Flow, Location, Observer, ObserverError, Section, Simulation, SnapshotError};
@@ -82,6 +83,7 @@ fn weights(place: f64, count: usize) -> Vec<(usize, f64)> {
 /// Appends the fields along a line at each look.
 pub(super) struct ProfileObserver {
     path: PathBuf,
+    source: Source,
     line: Line,
     stencils: Vec<Stencil>,
     axes: usize,
@@ -93,12 +95,12 @@ pub(super) struct ProfileObserver {
 impl ProfileObserver {
     pub(super) fn new(
         path: PathBuf,
-        line: Line,
+        (line, source): (Line, Source),
         fields: &[String],
         simulation: &Simulation,
         fresh: bool,
     ) -> Result<Self, Failure> {
-        let Location::Grid { origin, spacing, cells } = simulation.solver().location() else {
+        let Location::Grid { origin, spacing, cells } = source.location(simulation) else {
             return Err(Failure::io(path.display(), "profiles are of fields on a grid"));
         };
         let axes = if cells[2] > 1 { 3 } else { 2 };
@@ -106,6 +108,7 @@ impl ProfileObserver {
         let mut observer = Self {
             stencils: line.points().iter().map(stencil).collect(),
             path,
+            source,
             line,
             axes,
             fields: fields.to_vec(),
@@ -121,9 +124,7 @@ impl ProfileObserver {
     }
 
     fn frame(&self, simulation: &Simulation) -> Frame {
-        let mut frame = Frame::wanting(self.fields.iter().map(String::as_str));
-        simulation.solver().show(&mut frame);
-        frame
+        self.source.frame(&self.fields, simulation)
     }
 
     /// Names and units of columns: those of vectors have one per axis.

@@ -1,6 +1,6 @@
 //! Which names a scene uses: files of outputs, and what figures need of them.
 
-use super::{FigureSpec, Writer};
+use super::{FigureSpec, GridSpec, Writer};
 
 /// What a figure draws from.
 pub(crate) struct Need<'a> {
@@ -24,6 +24,7 @@ impl Writer {
             | Self::Fields { path, .. }
             | Self::Contacts { path, .. }
             | Self::Profile { path, .. }
+            | Self::Tracks { path, .. }
             | Self::Hdf5 { path, .. } => path,
         }
     }
@@ -35,6 +36,7 @@ impl Writer {
             Self::Fields { .. } => "Fields",
             Self::Contacts { .. } => "Contacts",
             Self::Profile { .. } => "Profile",
+            Self::Tracks { .. } => "Tracks",
             Self::Hdf5 { .. } => "Hdf5",
         }
     }
@@ -46,7 +48,16 @@ impl Writer {
             | Self::Fields { fields: names, .. }
             | Self::Contacts { fields: names, .. }
             | Self::Profile { fields: names, .. }
+            | Self::Tracks { fields: names, .. }
             | Self::Hdf5 { fields: names, .. } => names,
+        }
+    }
+
+    /// Cells over which grains are averaged, if they are.
+    pub(crate) fn grid(&self) -> Option<&GridSpec> {
+        match self {
+            Self::Fields { grid, .. } | Self::Profile { grid, .. } | Self::Hdf5 { grid, .. } => grid.as_ref(),
+            Self::Table { .. } | Self::Contacts { .. } | Self::Tracks { .. } => None,
         }
     }
 }

@@ -41,6 +41,9 @@ pub enum Writer {
         path: String,
         /// Fields to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
+        /// Cells over which grains are averaged; the fields are then those of a continuum.
+        #[serde(default)]
+        grid: Option<GridSpec>,
     },
     /// Contacts as lines between grains, for ParaView.
     Contacts {
@@ -49,7 +52,7 @@ pub enum Writer {
         /// Fields of contacts (`Link`) to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
     },
-    /// Fields along a line through a fluid, as rows of a CSV file: time, distance, place, then the fields.
+    /// Fields along a line through a fluid or a `grid` of grains, as rows of a CSV file: time, distance, place, then the fields.
     Profile {
         /// File in the run folder, such as `profile.csv`.
         path: String,
@@ -61,6 +64,18 @@ pub enum Writer {
         points: usize,
         /// Fields to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
+        /// Cells over which grains are averaged; the fields are then those of a continuum.
+        #[serde(default)]
+        grid: Option<GridSpec>,
+    },
+    /// Places of single grains and their fields, as rows of a CSV file: time, id, place, then the fields.
+    Tracks {
+        /// File in the run folder, such as `tracks.csv`.
+        path: String,
+        /// Which grains.
+        grains: Chosen,
+        /// Fields to write, such as `velocity`, `spin` and `force`; `granular info <scene>` lists all there are.
+        fields: Vec<String>,
     },
     /// Fields of all grains or cells in one temporal `.vtkhdf` file (cargo feature `hdf5`).
     Hdf5 {
@@ -68,7 +83,50 @@ pub enum Writer {
         path: String,
         /// Fields to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
+        /// Cells over which grains are averaged; the fields are then those of a continuum.
+        #[serde(default)]
+        grid: Option<GridSpec>,
     },
+}
+
+/// Square or cubic cells over which grains are averaged: coarse graining with a kernel that ends at twice its scale. Mass
+/// and momentum in the cells are exactly those of the grains; what is spread beyond the cells is written as
+/// `mass_outside`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GridSpec {
+    /// Lower corner, one length per axis.
+    pub from: Vec<Length>,
+    /// Upper corner; the last cells may reach beyond it.
+    pub to: Vec<Length>,
+    /// Edge of a cell.
+    pub spacing: Length,
+    /// Scale of the kernel over the spacing, 1 to 8. Fields are smooth when the scale is at least a mean diameter.
+    #[serde(default = "one_cell")]
+    pub width: usize,
+}
+
+fn one_cell() -> usize {
+    1
+}
+
+/// Which grains.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+pub enum Chosen {
+    /// Those with these identifiers, which count from 0.
+    Ids(Vec<u32>),
+    /// Every so many, from identifier 0 on; 1 for all.
+    Every(u32),
+}
+
+impl Chosen {
+    /// Whether a grain is one of them.
+    pub(crate) fn holds(&self, id: u32) -> bool {
+        match self {
+            Self::Ids(ids) => ids.contains(&id),
+            Self::Every(count) => id.is_multiple_of(*count),
+        }
+    }
 }
 
 /// A figure, as `<path>.svg` and `<path>.png` in the run folder.
@@ -127,7 +185,7 @@ pub enum FigureSpec {
         /// Time in units of sqrt(H/g) of a column; in seconds for other samples.
         time: f64,
     },
-    /// A field of a fluid as a colour map, at several times; in space its middle layer along y.
+    /// A field of a fluid, or of grains on a grid, as a colour map, at several times; in space its middle layer along y.
     Map {
         /// Name of the figure in the run folder, without ending.
         path: String,

@@ -3,6 +3,7 @@
 use super::Effort;
 use super::chance::Chance;
 use super::collapse::Collapse;
+use super::laws;
 use super::row::{Measure, Rows, Tier};
 use crate::failure::Failure;
 use granular_core::{D2, D3, Dim, Linear, Solver, Spin, StepError, Vector};
@@ -80,5 +81,5 @@ pub(super) fn energy(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
         let measure = Measure::absolute(Tier::Conservation, metric, percent, 0.0, 0.1);
         rows.add(measure.note(format!("over {} steps, E_0 the potential energy at the start", fallen.steps)));
     }
-    Ok(())
+    Ok(laws::balance(rows)?)
 }

@@ -22,6 +22,15 @@ pub(super) fn named(text: &str, name: &str, column: &str) -> f64 {
     columns(text, [column])[index.expect("reference data has the rows of its case")][0]
 }
 
+/// The texts of a column, row by row.
+pub(super) fn named_texts(text: &str, column: &str) -> Vec<String> {
+    let mut lines = text.lines();
+    let header = lines.next().unwrap_or_default();
+    let place = header.split(',').position(|name| name == column);
+    let place = place.expect("reference data has the columns of its case");
+    lines.map(|line| line.split(',').nth(place).unwrap_or_default().to_owned()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! Where a solver fails, beside where it says that it will.
 //!
-//! Each sweep makes a flow that starts at full speed more hostile, value by value, until a run no longer finishes, and
+//! Each sweep makes a flow that starts at full speed, or a sample of grains, more hostile, value by value, until a run no longer finishes, and
 //! closes in on the limit by bisection. The prediction is the solver's own report of
 //! [limits](granular_core::Solver::limits); it is one of the values tried. Two things must hold, or the study fails:
 //!
@@ -16,11 +16,14 @@
 //! # Ok::<(), granular::failure::Failure>(())
 //! ```
 
+mod dem;
 mod flows;
+mod judge;
 mod search;
 mod show;
 mod watch;
 
+pub use dem::dem;
 pub use show::table;
 
 use super::{Effort, parallel};
@@ -28,6 +31,7 @@ use crate::failure::Failure;
 use flows::{Geometry, Start, State};
 use granular_core::{Limits, Solver};
 use granular_lbm::Operator;
+use judge::Swept;
 use search::{Found, Range};
 use serde::Serialize;
 use watch::watch;
@@ -280,54 +284,19 @@ impl Sweep {
 
     /// `refuses`: the check refuses what is beyond the prediction.
     fn row(&self, found: &Found, predicted: Option<f64>, refuses: bool) -> Row {
-        let shown = |value: f64| self.parameter.shown(value);
-        let [from, to] = self.parameter.range();
-        // Whether the observed limit is at least as hostile as the predicted one.
-        let reaches = |value: f64| predicted.is_none_or(|p| if to > from { value >= p } else { value <= p });
-        let is_safe = found.finished.is_some_and(reaches) || found.failed.is_none();
-        let beyond = match &found.failed {
-            None => format!("finishes to the end of the sweep, {}", brief(shown(to))),
-            Some((value, why)) => format!("stopped at {}: {why}", brief(shown(*value))),
-        };
-        let (outcome, mut reason) = match (&found.failed, predicted) {
-            (_, Some(predicted)) if refuses && is_safe => {
-                (Outcome::Refused, format!("refused above {predicted}; past the check, {beyond}"))
-            }
-            (None, _) => (Outcome::Finished, beyond),
-            (Some(_), _) => (Outcome::Stopped, beyond),
-        };
-        let mut faults: Vec<String> = found
-            .missed
-            .iter()
-            .map(|(value, why)| format!("guard silent at {}: {why}", brief(shown(*value))))
-            .collect();
-        if !is_safe {
-            faults.push("it fails within the bounds that the solver reports".to_owned());
-        }
-        let fault = (!faults.is_empty()).then(|| faults.join("; "));
-        if let Some(fault) = &fault {
-            reason = format!("{fault}; {reason}");
-        }
-        Row {
+        let parameter = self.parameter;
+        let swept = Swept {
             case: self.case.clone(),
-            parameter: self.parameter.name(),
-            predicted_limit: predicted.map(shown),
-            observed_limit: found.finished.map(shown),
-            outcome,
-            reason,
-            fault,
-        }
+            parameter: parameter.name(),
+            range: parameter.range(),
+            shown: &|value| parameter.shown(value),
+        };
+        swept.row(found, predicted, refuses)
     }
 }
 
 fn refused(error: granular_lbm::SetupError) -> Failure {
     Failure::Refused(vec![error.to_string()])
-}
-
-/// At most five digits.
-fn brief(value: f64) -> String {
-    let text = format!("{value:.5}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// What a study comes to.

@@ -1,7 +1,8 @@
 //! Limits as a table for people.
 
+use super::judge::brief;
 use super::watch::MISNAMED;
-use super::{Outcome, Row, brief};
+use super::{Outcome, Row};
 use std::fmt::Write;
 
 /// Longest reason that is printed on a line.
@@ -29,10 +30,10 @@ pub fn table(rows: &[Row]) -> String {
     }
     let failed = rows.iter().filter(|row| row.fault.is_some()).count();
     let misnamed = rows.iter().filter(|row| row.reason.contains(MISNAMED)).count();
-    let _ = writeln!(
-        text,
-        "{misnamed} limits where the guard stopped in time, but named a cell whose density makes sense"
-    );
+    if misnamed > 0 {
+        let said = "limits where the guard stopped in time, but named a cell whose density makes sense";
+        let _ = writeln!(text, "{misnamed} {said}");
+    }
     let _ = writeln!(
         text,
         "{} limits: {failed} where a guard was silent or a run failed within its bounds",

@@ -1,0 +1,61 @@
+//! Fields of a continuum from grains, on a grid: coarse graining after \[Goldhirsch2010\], with walls after
+//! \[Weinhart2012\].
+//!
+//! A kernel `w` spreads every grain over a few cells. With mass `m`, velocity `v` and place `x` of grains, forces `f` on
+//! the first of two bodies and branches `b` from the second to the first,
+//!
+//! ```text
+//! density           rho(r) = sum m w(r - x)
+//! momentum          p(r)   = sum m v w(r - x),     velocity V = p / rho
+//! kinetic stress    s_k(r) = sum m (v - V)(v - V) w(r - x)
+//! contact stress    s_c(r) = sum f b  int_0^1 w(r - x_2 - s b) ds
+//! force of walls    t(r)   = sum f w(r - c),       c the point of contact
+//! ```
+//!
+//! These fields fulfil the balances of mass and momentum at every point and time,
+//!
+//! ```text
+//! d rho/dt + div p = 0        dp/dt + div(rho V V) = -div(s_c + s_k) + rho g + t
+//! ```
+//!
+//! whatever the kernel, as long as it is smooth; stresses are positive in compression. At a wall the branch runs from
+//! the point of contact to the grain.
+//!
+//! **The kernel** is the product of one cubic B-spline per axis whose knots lie on the cells: its scale is a whole number
+//! of cells. It is chosen because it is the smoothest of the short kernels for which all of this holds at once:
+//!
+//! - values in the cells sum to one for any place of a grain (splines on a grid are a partition of unity), so that mass
+//!   and momentum in cells are exactly those of the grains, and so is the sum of `f b`; no weight is corrected, which
+//!   would break the balances above;
+//! - it has two continuous derivatives, so that gradients of velocity are continuous;
+//! - along a branch it is a polynomial of degree 9 at most between planes through the centres of cells; Gauss-Legendre
+//!   quadrature with five points integrates that exactly;
+//! - it ends at two scales from the grain, and is nearly the same in all directions: it differs from a normal
+//!   distribution of deviation 0.577 scales by less than 4 % of its maximum.
+//!
+//! What a kernel spreads beyond the grid is not lost silently: it is shown as `mass_outside`.
+//!
+//! ```
+//! use granular_core::glam::DVec2;
+//! use granular_dem::{CoarseGrid, Dem2, Grain, Material, Materials, Options, Setup};
+//!
+//! let mut materials = Materials::new();
+//! let glass = materials.add(Material::default())?;
+//! let grain = Grain::at(DVec2::new(0.0123, 0.0045), 1e-3, glass).moving(DVec2::X);
+//! let gravity = DVec2::ZERO;
+//! let dem = Dem2::new(Setup { materials, grains: vec![grain], walls: vec![], gravity, options: Options::default() })?;
+//! let grid = CoarseGrid::new(DVec2::ZERO, DVec2::splat(0.02), 1e-3, 2)?;
+//! let fields = dem.coarse_fields(&grid);
+//! let mass: f64 = fields.density().iter().map(|density| density * grid.cell_volume()).sum();
+//! assert!((mass / (2650.0 * std::f64::consts::PI * 1e-6) - 1.0).abs() < 1e-14);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod catalogue;
+mod fields;
+mod grid;
+mod spline;
+mod sums;
+
+pub use fields::CoarseFields;
+pub use grid::CoarseGrid;

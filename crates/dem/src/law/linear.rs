@@ -1,0 +1,150 @@
+//! Linear springs and dashpots.
+
+use super::slider::{Motion, Slider};
+use super::{ContactLaw, Frictional, Load, Meeting};
+use crate::ledger::Tally;
+use crate::material::{PairProperties, Tension};
+use granular_core::{Dim, Linear};
+
+/// Linear spring and dashpot along the normal, `F = k delta + c approach` \[DEM-3\].
+///
+/// The damping is solved per pair from the restitution asked for, `c = 2 zeta sqrt(m_eff k)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearNormal {
+    /// Normal stiffness \[N/m\].
+    pub stiffness: f64,
+    /// `2 zeta sqrt(k)`: times the root of the effective mass it is the damping.
+    pub damping_factor: f64,
+    /// Whether parting contacts may pull.
+    pub tension: Tension,
+}
+
+impl LinearNormal {
+    #[inline(always)]
+    fn force(&self, overlap: f64, presence: f64, approach: f64, damping: f64) -> f64 {
+        let force = self.stiffness * overlap + presence * damping * approach;
+        if self.tension == Tension::Cut { force.max(0.0) } else { force }
+    }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearNormal {
+    type Memory = ();
+    const TANGENTIAL: bool = false;
+    const NAME: &'static str = "linear without friction";
+
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        let stiffness = properties.normal_stiffness;
+        Self { stiffness, damping_factor: 2.0 * properties.zeta(tension) * stiffness.sqrt(), tension }
+    }
+
+    #[inline(always)]
+    fn load<const LEDGER: bool>(&self, m: &Meeting<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let force = self.force(m.overlap, m.presence, m.approach, damping);
+        // Where the cut acts, the dashpot takes up what the spring gives back.
+        tally.normal_damping(|| (force - self.stiffness * m.overlap) * m.approach * m.dt);
+        Load::along_normal(force)
+    }
+
+    fn reversed((): ()) {}
+
+    fn at_rest(&self, m: &Meeting<D>, (): ()) -> (Load<D>, f64) {
+        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let force = self.force(m.overlap, 1.0, m.approach, damping);
+        (Load::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
+    }
+}
+
+/// [`LinearNormal`] with a tangential spring under a Coulomb cap \[DEM-6, DEM-7\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearFrictional {
+    /// Along the normal.
+    pub normal: LinearNormal,
+    /// Tangential stiffness \[N/m\].
+    pub tangential_stiffness: f64,
+    /// Tangential over normal damping coefficient \[-\].
+    pub damping_ratio: f64,
+    /// Coulomb friction \[-\].
+    pub friction: f64,
+}
+
+impl LinearFrictional {
+    #[inline(always)]
+    fn slider(&self, effective_mass: f64) -> Slider {
+        let damping = self.damping_ratio * self.normal.damping_factor * effective_mass.sqrt();
+        Slider { stiffness: self.tangential_stiffness, damping }
+    }
+}
+
+impl<D: Dim> Frictional<D> for LinearFrictional {
+    const RESISTING: [&'static str; 2] = [
+        "linear with friction and rolling resistance",
+        "linear with friction, rolling and twisting resistance",
+    ];
+
+    #[inline(always)]
+    fn slider(&self, meeting: &Meeting<D>) -> Slider {
+        self.slider(meeting.effective_mass)
+    }
+
+    #[inline(always)]
+    fn last_stiffness(&self, _: &D::Spin) -> f64 {
+        self.tangential_stiffness
+    }
+
+    #[inline(always)]
+    fn held<S: Linear>(&self, _: &D::Spin, spring: S) -> f64 {
+        self.slider(1.0).held(spring)
+    }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearFrictional {
+    type Memory = D::Spin;
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "linear with friction";
+
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self {
+            normal: <LinearNormal as ContactLaw<D>>::between(properties, tension),
+            tangential_stiffness: properties.tangential_stiffness,
+            damping_ratio: properties.damping_ratio,
+            friction: properties.friction,
+        }
+    }
+
+    #[inline(always)]
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Meeting<D>,
+        memory: &mut D::Spin,
+        tally: &mut Tally<LEDGER>,
+    ) -> Load<D> {
+        let mut load: Load<D> = self.normal.load(m, &mut (), tally);
+        let cap = self.friction * load.normal.max(0.0);
+        *memory = D::follow(*memory, m.normal, m.twist * m.dt);
+        let slid = self.slider(m.effective_mass).load(memory, &Motion::of(m, m.slip, m.start_slip), cap);
+        tally.tangential_damping(|| slid.damped);
+        tally.sliding(|| slid.slid);
+        load.tangential = slid.force;
+        load
+    }
+
+    #[inline(always)]
+    fn release<const LEDGER: bool>(&self, memory: &D::Spin, tally: &mut Tally<LEDGER>) {
+        tally.tangential_damping(|| self.slider(1.0).held(*memory));
+    }
+
+    fn reversed(memory: D::Spin) -> D::Spin {
+        // n and xi both change sign, so n x xi does not.
+        memory
+    }
+
+    fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
+        let (mut load, energy) = self.normal.at_rest(m, ());
+        let cap = self.friction * load.normal.max(0.0);
+        let slider = self.slider(m.effective_mass);
+        let (force, stored) = slider.at_rest(memory, m.slip, (m.last_dt, self.tangential_stiffness), cap);
+        load.tangential = force;
+        (load, energy + stored)
+    }
+}

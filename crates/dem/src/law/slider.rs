@@ -1,0 +1,138 @@
+//! Springs that slide at a cap.
+
+use super::Meeting;
+use granular_core::{Dim, Linear};
+
+/// A spring and dashpot side by side that slide when their force reaches a cap \[DEM-6,
+/// Cundall1979\].
+///
+/// The spring lives at the middle of steps and advances from one to the next by the velocity
+/// between them, the one that moves the grains: the leapfrog, which neither damps nor excites.
+/// (Advanced by the predicted velocity it gains `(w dt)^4 / 8` of its amplitude in each step.)
+/// It slides back until the force is at the cap. Sliding takes motion from spring and dashpot
+/// alike, so that nothing jumps when it begins: with no dashpot this is the reset of the spring
+/// to `cap / k`; with one, a spring that was set to `cap / k` would gain the energy that the
+/// dashpot held back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slider {
+    /// Stiffness \[N/m\].
+    pub stiffness: f64,
+    /// Damping while the surfaces overlap \[N s/m\].
+    pub damping: f64,
+}
+
+/// Outcome of [`Slider::load`].
+#[derive(Clone, Copy, Debug)]
+pub struct Slid<S> {
+    /// Force on the first body.
+    pub force: S,
+    /// Energy lost in the dashpot over the step.
+    pub damped: f64,
+    /// Energy lost by sliding over the step.
+    pub slid: f64,
+}
+
+/// How two surfaces pass each other in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<S> {
+    /// At the middle of the step, as predicted.
+    pub rate: S,
+    /// At its start.
+    pub start_rate: S,
+    /// Share of the step during which they overlap.
+    pub presence: f64,
+    /// Whether they meet within the step.
+    pub enters: bool,
+    /// The step \[s\].
+    pub dt: f64,
+    /// The step before \[s\].
+    pub last_dt: f64,
+}
+
+impl<S> Motion<S> {
+    /// At these rates in the middle and at the start of the step.
+    #[inline(always)]
+    pub fn of<D: Dim>(m: &Meeting<D>, rate: S, start_rate: S) -> Self {
+        let enters = m.presence < 1.0 && m.approach > 0.0;
+        Self { rate, start_rate, presence: m.presence, enters, dt: m.dt, last_dt: m.last_dt }
+    }
+
+    /// Times by which the spring advances before and after the load. Before: from the middle of
+    /// the last step to the middle of this one, or of the part in which the surfaces overlap.
+    /// After: nothing, but for surfaces that met within the step, so that the next advance ends
+    /// at the middle of the next step.
+    #[inline(always)]
+    pub fn advances(&self) -> (f64, f64) {
+        let time = self.presence * self.dt;
+        if self.enters { (0.5 * time, 0.5 * (time - self.dt)) } else { (0.5 * (self.last_dt + time), 0.0) }
+    }
+}
+
+impl Slider {
+    /// The load over one step under a cap \[N\]; the spring moves on.
+    #[inline(always)]
+    pub fn load<S: Linear>(&self, spring: &mut S, motion: &Motion<S>, cap: f64) -> Slid<S> {
+        let (before, after) = motion.advances();
+        let (rate, dt) = (motion.rate, motion.dt);
+        let trial = *spring + motion.start_rate * before;
+        let damping = self.damping * motion.presence;
+        let stuck = -(trial * self.stiffness + rate * damping);
+        let size = stuck.length_squared();
+        if size <= cap * cap {
+            *spring = trial + motion.start_rate * after;
+            return Slid { force: stuck, damped: damping * rate.length_squared() * dt, slid: 0.0 };
+        }
+        let size = size.sqrt();
+        let direction = stuck * (1.0 / size);
+        // Without spring and dashpot there is nothing to hold back: the cap is zero or unknown.
+        let hold = (self.stiffness + damping / dt).max(f64::MIN_POSITIVE);
+        let slip = (size - cap) / hold;
+        let left = rate + direction * (slip / dt);
+        *spring = trial + direction * slip + motion.start_rate * after;
+        let damped = damping * left.length_squared() * dt;
+        // The force while it slides is the mean of this step's and the last one's, so that the
+        // sum of losses and stored energy follows the work to second order.
+        let mean = cap + 0.5 * self.stiffness * (motion.start_rate.dot(direction) * before + slip);
+        Slid { force: direction * cap, damped, slid: mean * slip }
+    }
+
+    /// Carries a spring over from another stiffness, `last`, and returns the energy lost \[J\].
+    ///
+    /// Where the contact stiffens the force stays, where it softens the displacement does: either
+    /// way the spring loses energy and none is created \[Thornton2013\]. The loss at softening
+    /// is taken half way through the `advance` that follows, so that work, stored energy and
+    /// losses balance to the second order.
+    #[inline(always)]
+    pub fn carry<S: Linear>(&self, spring: &mut S, last: f64, advance: S) -> f64 {
+        let now = self.stiffness;
+        if now > last {
+            let ratio = last / now;
+            let lost = 0.5 * last * (1.0 - ratio) * spring.length_squared();
+            *spring = *spring * ratio;
+            lost
+        } else {
+            0.5 * (last - now) * spring.dot(*spring + advance)
+        }
+    }
+
+    /// Energy held at the end of a contact. The dashpot then lets the spring go; without one the
+    /// spring has slid back with the cap already.
+    #[inline(always)]
+    pub fn held<S: Linear>(&self, spring: S) -> f64 {
+        if self.damping > 0.0 { 0.5 * self.stiffness * spring.length_squared() } else { 0.0 }
+    }
+
+    /// Force and stored energy between steps: the spring is half a step behind, and what the next
+    /// step will slide is still stored.
+    ///
+    /// The energy is that of the stiffness at the last step: what a change since will take is
+    /// still stored.
+    pub fn at_rest<S: Linear>(&self, spring: S, rate: S, last: (f64, f64), cap: f64) -> (S, f64) {
+        let (last_dt, last_stiffness) = last;
+        let spring = spring + rate * (0.5 * last_dt);
+        let stuck = -(spring * self.stiffness + rate * self.damping);
+        let size = stuck.length();
+        let force = if size <= cap { stuck } else { stuck * (cap / size) };
+        (force, 0.5 * last_stiffness * spring.length_squared())
+    }
+}

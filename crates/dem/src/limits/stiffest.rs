@@ -1,0 +1,186 @@
+//! The stiffest meeting of two materials, and the step that it bears.
+
+use crate::dem::Dem;
+use crate::material::{PairProperties, Tension};
+use crate::setup::ContactModel;
+use granular_core::{Dim, Linear};
+use std::f64::consts::PI;
+
+/// Overlap over effective radius up to which a Hertz contact must be stable at least, whatever
+/// the speeds.
+const LEAST_OVERLAP: f64 = 1e-4;
+
+/// The stiffest meeting that a scene allows between two materials.
+pub(super) struct Stiffest {
+    pub(super) oscillator: Oscillator,
+    /// Shortest contact time \[s\].
+    pub(super) contact_time: f64,
+    /// Shorter Rayleigh time of two spheres in Hertz contact \[s\]; else infinite.
+    pub(super) rayleigh_time: f64,
+    /// Overlap of the hardest impact \[m\].
+    pub(super) deepest: f64,
+    pub(super) names: String,
+    /// What was assumed.
+    pub(super) meeting: String,
+}
+
+/// Two grains on springs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Oscillator {
+    /// Stiffness over effective mass \[1/s^2\].
+    normal: f64,
+    tangential: f64,
+    /// Damping over effective mass \[1/s\].
+    normal_damping: f64,
+    tangential_damping: f64,
+}
+
+/// Two grains that may meet: materials, radii and masses of the lightest, or infinite for a wall.
+#[derive(Clone, Copy)]
+struct Couple {
+    properties: PairProperties,
+    effective_mass: f64,
+    effective_radius: f64,
+    /// Of the lighter grain \[kg\].
+    mass: f64,
+}
+
+impl Oscillator {
+    pub(super) fn linear(pair: &PairProperties, effective_mass: f64, tension: Tension) -> Self {
+        let normal = pair.normal_stiffness / effective_mass;
+        let normal_damping = 2.0 * pair.zeta(tension) * normal.sqrt();
+        Self {
+            normal,
+            tangential: pair.tangential_stiffness / effective_mass,
+            normal_damping,
+            tangential_damping: pair.damping_ratio * normal_damping,
+        }
+    }
+
+    /// The Hertz contact about an overlap \[m\]: slope of the force `2 E* a`, damping `2
+    /// sqrt(5/6) zeta sqrt(slope m)`, tangential stiffness `8 G* a`.
+    fn hertz(couple: &Couple, overlap: f64, tension: Tension) -> Self {
+        let area = (couple.effective_radius * overlap).sqrt();
+        let normal = 2.0 * couple.properties.effective_modulus * area / couple.effective_mass;
+        let normal_damping = 2.0 * (5.0_f64 / 6.0).sqrt() * couple.properties.zeta(tension) * normal.sqrt();
+        Self {
+            normal,
+            tangential: 8.0 * couple.properties.effective_shear_modulus * area / couple.effective_mass,
+            normal_damping,
+            tangential_damping: couple.properties.damping_ratio * normal_damping,
+        }
+    }
+
+    /// Largest stable step \[s\]: see [`stability_step`](crate::stability_step).
+    pub(super) fn largest_step<D: Dim>(&self, neighbours: usize, turns: bool) -> f64 {
+        let gain = 1.0 + 1.0 / D::BALL_INERTIA;
+        let share = neighbours as f64;
+        let limit = |stiffness: f64, damping: f64| {
+            let (w2, c) = (stiffness * share, damping * share);
+            // w2 dt^2 + 4 c dt = 4 with c = 2 zeta w.
+            2.0 * ((c * c + w2).sqrt() - c) / w2
+        };
+        let along = limit(self.normal, self.normal_damping);
+        if !turns || self.tangential <= 0.0 {
+            return along;
+        }
+        along.min(limit(gain * self.tangential, gain * self.tangential_damping))
+    }
+}
+
+impl<D: Dim> Dem<D> {
+    /// For every pair of materials that can touch, the lightest grains.
+    pub(super) fn stiffest_pairs(&self) -> Vec<Stiffest> {
+        let count = self.materials.len();
+        let mut lightest = vec![(f64::INFINITY, f64::INFINITY); count];
+        for index in 0..self.len() {
+            let place = &mut lightest[self.grains.material_of(index)];
+            if self.grains.mass[index] < place.0 {
+                *place = (self.grains.mass[index], self.grains.radius[index]);
+            }
+        }
+        let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
+        let (speed, stack) = (self.fastest_impact(), self.extent_along_gravity());
+        let present = self.deepest_overlap();
+        let mut pairs = Vec::new();
+        let mut add = |couple: Couple, names: &str, smaller: f64| {
+            pairs.push(match self.options.contact {
+                ContactModel::Linear => self.linear(&couple, speed, names),
+                ContactModel::Hertz => self.hertz(&couple, speed, (stack, present * smaller), names),
+            });
+        };
+        for (a, b, properties) in self.materials.pairs() {
+            let ((m, r), (n, s)) = (lightest[a], lightest[b]);
+            if m.is_finite() && n.is_finite() {
+                let couple = Couple {
+                    properties,
+                    effective_mass: m * n / (m + n),
+                    effective_radius: r * s / (r + s),
+                    mass: m.min(n),
+                };
+                add(couple, "grain on grain", r.min(s));
+            }
+            let at_wall = |wall: usize, grain: (f64, f64)| {
+                if walls.contains(&wall) { grain } else { lightest_of_none() }
+            };
+            let (first, second) = (at_wall(b, (m, r)), at_wall(a, (n, s)));
+            let (mass, radius) = if first.0 <= second.0 { first } else { second };
+            if mass.is_finite() {
+                let couple = Couple { properties, effective_mass: mass, effective_radius: radius, mass };
+                add(couple, "grain on wall", radius);
+            }
+        }
+        pairs
+    }
+
+    fn linear(&self, couple: &Couple, speed: f64, names: &str) -> Stiffest {
+        let (properties, tension) = (&couple.properties, self.options.tension);
+        Stiffest {
+            oscillator: Oscillator::linear(properties, couple.effective_mass, tension),
+            contact_time: properties.contact_time(couple.effective_mass, tension),
+            rayleigh_time: f64::INFINITY,
+            deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
+            names: names.to_owned(),
+            meeting: "lightest grains".to_owned(),
+        }
+    }
+
+    /// A Hertz contact is stiffest where it is deepest: at the hardest impact, or under the weight
+    /// of a stack of grains as high as the sample, or as it is now. `reach` holds the height of
+    /// the sample and the present overlap \[m\].
+    fn hertz(&self, couple: &Couple, speed: f64, reach: (f64, f64), names: &str) -> Stiffest {
+        let (properties, tension) = (&couple.properties, self.options.tension);
+        let radius = couple.effective_radius;
+        let impact = properties.hertz_impact(radius, couple.effective_mass, speed);
+        let deepest = impact.largest_overlap();
+        let grains = 1.0 + reach.0 / self.grains.radius_range().0;
+        let weight = couple.mass * self.gravity.length() * grains;
+        let pressed = (0.75 * weight / (properties.effective_modulus * radius.sqrt())).powf(2.0 / 3.0);
+        let resting = pressed.max(reach.1).max(LEAST_OVERLAP * radius);
+        let half_period = PI / Oscillator::hertz(couple, resting, tension).normal.sqrt();
+        let overlap = deepest.max(resting);
+        Stiffest {
+            oscillator: Oscillator::hertz(couple, overlap, tension),
+            contact_time: impact.duration(properties.zeta(tension), tension).min(half_period),
+            rayleigh_time: if D::TWISTS { self.rayleigh_time() } else { f64::INFINITY },
+            deepest,
+            names: names.to_owned(),
+            meeting: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
+        }
+    }
+
+    /// Shortest Rayleigh time of a grain \[s\].
+    fn rayleigh_time(&self) -> f64 {
+        let time = |index: usize| {
+            let material = self.materials.get(crate::MaterialId(self.grains.material_of(index) as u8));
+            let elasticity = material.elasticity?;
+            Some(elasticity.rayleigh_time(self.grains.radius[index], material.density))
+        };
+        (0..self.len()).filter_map(time).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Mass and radius where there is no grain.
+fn lightest_of_none() -> (f64, f64) {
+    (f64::INFINITY, f64::INFINITY)
+}
