@@ -77,6 +77,8 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError>;
     fn law_name(&self) -> &'static str;
     fn tangential(&self) -> bool;
+    /// Whether any law asks for the predicted motion across contacts.
+    fn predicts(&self) -> bool;
     /// Bytes in lists, and bytes that one contact remembers.
     fn bytes(&self) -> (usize, usize);
 }
@@ -344,6 +346,10 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn tangential(&self) -> bool {
         L::TANGENTIAL
+    }
+
+    fn predicts(&self) -> bool {
+        self.laws.iter().any(L::predicts)
     }
 
     fn bytes(&self) -> (usize, usize) {

@@ -26,6 +26,8 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) dt: f64,
     /// The last step taken \[s\].
     pub(crate) last_dt: f64,
+    /// Whether a law asks how surfaces pass each other in the middle of the step, as predicted.
+    pub(crate) predicts: bool,
     /// Surfaces farther apart than this do not meet within the step \[m\].
     pub(crate) margin: f64,
     /// Part of the overlap by which each lever arm is shorter than the radius.
@@ -129,35 +131,22 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
                 let second = partner as usize;
                 let abroad = second < self.start;
                 let arm = position - view.position[second];
-                let sum = radius + view.radius[second];
-                let reach = sum + view.margin;
+                let reach = radius + view.radius[second] + view.margin;
                 let squared = arm.length_squared();
-                let met = if squared < reach * reach {
-                    meet_grain::<D, L>(view, first, second, arm, squared.sqrt())
+                let given = if squared < reach * reach {
+                    self.touch(first, second, arm, squared.sqrt(), memory, (&mut force, &mut torque))
                 } else {
                     None
                 };
-                let mut given = Owed::default();
-                if let Some((meeting, arms)) = met {
-                    self.guard(first, sum - squared.sqrt(), radius.min(view.radius[second]));
-                    let law = self.laws.between(view.material_of(first), view.material_of(second));
-                    let load = law.load(&meeting, memory, &mut self.tally);
-                    let on_first = push_of::<D, L>(&load, meeting.normal);
-                    force += on_first;
-                    given.force = -on_first;
-                    if L::TANGENTIAL {
-                        torque += load.rolling - load.tangential * arms.0;
-                        given.torque = -load.rolling - load.tangential * arms.1;
-                    }
-                } else if *memory != L::Memory::default() {
+                if given.is_none() && *memory != L::Memory::default() {
                     let law = self.laws.between(view.material_of(first), view.material_of(second));
                     law.release(memory, &mut self.tally);
                     *memory = L::Memory::default();
                 }
                 if abroad {
-                    outgoing[owed] = given;
+                    outgoing[owed] = given.unwrap_or_default();
                     owed += 1;
-                } else if met.is_some() {
+                } else if let Some(given) = given {
                     let place = second - self.start;
                     self.force[place] += given.force;
                     if L::TANGENTIAL {
@@ -171,6 +160,34 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
                 self.torque[local] = torque;
             }
         }
+    }
+
+    /// Adds the load between two grains at `distance`, if they meet within the step, to force and
+    /// torque of the first; returns what the second one gets.
+    #[inline(always)]
+    fn touch(
+        &mut self,
+        first: usize,
+        second: usize,
+        arm: D::Vec,
+        distance: f64,
+        memory: &mut L::Memory,
+        (force, torque): (&mut D::Vec, &mut D::Spin),
+    ) -> Option<Owed<D>> {
+        let view = self.view;
+        let (meeting, arms) = meet_grain::<D, L>(view, first, second, arm, distance)?;
+        let (radius, other) = (view.radius[first], view.radius[second]);
+        self.guard(first, radius + other - distance, radius.min(other));
+        let law = self.laws.between(view.material_of(first), view.material_of(second));
+        let load = law.load(&meeting, memory, &mut self.tally);
+        let on_first = push_of::<D, L>(&load, meeting.normal);
+        *force += on_first;
+        let mut given = Owed { force: -on_first, torque: D::Spin::ZERO };
+        if L::TANGENTIAL {
+            *torque += load.rolling - load.tangential * arms.0;
+            given.torque = -load.rolling - load.tangential * arms.1;
+        }
+        Some(given)
     }
 
     #[inline(always)]
@@ -244,16 +261,18 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         last_dt: view.last_dt,
     };
     if L::TANGENTIAL {
-        let spin = view.spin[first];
-        let surface = D::tangential(spin * own_arm + other.spin * other.arm, normal);
-        meeting.slip = D::cross(normal, relative) - surface;
-        meeting.roll = D::tangential(spin - other.spin, normal);
-        meeting.twist = 0.5 * D::twist(spin + other.spin, normal);
+        if view.predicts {
+            let spin = view.spin[first];
+            let surface = D::tangential(spin * own_arm + other.spin * other.arm, normal);
+            meeting.slip = D::cross(normal, relative) - surface;
+            meeting.roll = D::tangential(spin - other.spin, normal);
+        }
         let relative = view.start_velocity[first] - other.start_velocity;
         let spin = view.start_spin[first];
         let surface = D::tangential(spin * own_arm + other.start_spin * other.arm, normal);
         meeting.start_slip = D::cross(normal, relative) - surface;
         meeting.start_roll = D::tangential(spin - other.start_spin, normal);
+        meeting.twist = 0.5 * D::twist(spin + other.start_spin, normal);
         if L::TWISTING {
             meeting.twisting = D::twist(view.spin[first] - other.spin, normal);
             meeting.start_twisting = D::twist(spin - other.start_spin, normal);
