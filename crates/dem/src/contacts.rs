@@ -7,12 +7,15 @@
 
 use crate::cell::Cell;
 use crate::cell::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
+use crate::facet_lists::{self, FacetList};
 use crate::grains::Grains;
-use crate::kernel::{Kernel, Laws, Owed, Trouble, View, meet_wall, overlapping, push_of};
-use crate::law::{ContactLaw, Meeting};
+use crate::kernel::{Kernel, Laws, Owed, Trouble, View, contact_of, meet_wall, overlapping};
+use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
-use crate::lists::{BlockList, spare};
+use crate::lists::{BlockList, Places, places, spare};
 use crate::material::{Materials, Tension};
+use crate::moving::Reaction;
+use crate::wall::Wall;
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
@@ -57,9 +60,15 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     /// old index of each grain when grains were re-sorted.
     fn list(&mut self, view: &View<'_, D>, skin: f64, order: Option<&[u32]>);
     /// Writes the loads of all contacts to `force` and `torque`, except what [`Pairs::collect`] adds.
+    /// Memories move with grains that were put in or taken out: `place` tells where each is now.
+    fn regroup(&mut self, walls: &[Wall<D>], blocks: Blocks, place: &[u32]);
+    /// Another number of grains, whose memories will be restored.
+    fn resize(&mut self, blocks: Blocks);
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]);
     /// Adds what other blocks owe to the grains of `block`.
     fn collect(&self, block: usize, force: &mut [D::Vec], torque: &mut [D::Spin]);
+    /// Adds up the push on each wall in the last push, when walls move.
+    fn add_reactions(&self, to: &mut [Reaction<D>]);
     /// Losses of the last push, and a contact that was too deep.
     fn outcome(&self) -> (Losses, Option<Trouble>);
     /// Visits all contacts that overlap, in a fixed order.
@@ -73,8 +82,9 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn relocate(&mut self, moved: &Moved<'_>);
     /// Takes changed materials.
     fn update(&mut self, materials: &Materials, tension: Tension);
-    fn save(&self, grains: &Grains<D>, to: &mut Section);
-    fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError>;
+    fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section);
+    fn restore(&mut self, from: &Section, grains: &Grains<D>, walls: &[Wall<D>])
+    -> Result<(), SnapshotError>;
     fn law_name(&self) -> &'static str;
     fn tangential(&self) -> bool;
     /// Whether any law asks for the predicted motion across contacts.
@@ -105,6 +115,9 @@ pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
+    facets: Vec<FacetList<D, L::Memory>>,
+    /// Push on each wall by the grains of each block; empty when no wall moves.
+    reactions: Vec<Vec<Reaction<D>>>,
     /// One per block in a periodic cell; none elsewhere.
     images: Vec<ImageList<D, L::Memory>>,
     relocated: Vec<(ImagePair, L::Memory)>,
@@ -122,6 +135,8 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             materials: materials.len(),
             blocks,
             lists: (0..count).map(|_| BlockList::default()).collect(),
+            facets: (0..count).map(|_| FacetList::default()).collect(),
+            reactions: vec![Vec::new(); count],
             images: Vec::new(),
             relocated: Vec::new(),
             outgoing: vec![Vec::new(); count],
@@ -144,11 +159,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
     ) {
         self.images.resize_with(self.blocks.count(), ImageList::default);
         if let Some(order) = order {
-            let mut places = vec![0_u32; order.len()];
-            for (new, &old) in order.iter().enumerate() {
-                places[old as usize] = new as u32;
-            }
-            self.relocate(&Moved::Sorted { places: &places });
+            self.relocate(&Moved::Sorted { places: &places(order) });
         }
         let bounds = Bounds::of(cell, view.position);
         let (grid, blocks) = (&self.grid, self.blocks);
@@ -160,7 +171,8 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             let start = blocks.range(block).start as u32;
             list.owed = list.pairs.iter().filter(|pair| pair.second < start).count();
             outgoing.resize(outgoing.len() + list.owed, Owed::default());
-            spare(outgoing);
+            // What a compact block can owe, and be owed, across its border changes as the cell deforms.
+            spare(outgoing, blocks.size());
         }
         self.lists.iter_mut().for_each(BlockList::spare);
         images::fill_inboxes(&self.images, &self.outgoing, blocks, &mut self.inbox);
@@ -192,30 +204,42 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         let (laws, blocks) = (Laws { list: &self.laws, materials: self.materials }, self.blocks);
         let work = (
             PerBlock(&mut self.lists),
+            (PerBlock(&mut self.facets), PerBlock(&mut self.reactions)),
             PerBlock(&mut self.outgoing),
             PerBlock(&mut self.results),
             PerBlock(&mut self.images),
             force,
             torque,
         );
-        blocks.for_each(work, |block, (list, outgoing, result, images, force, torque)| {
-            let mut kernel = Kernel::<D, L, LEDGER> {
-                view,
-                laws,
-                start: blocks.range(block).start,
-                force,
-                torque,
-                tally: Tally::default(),
-                trouble: None,
-            };
-            pass(&mut kernel, &mut list.0[0], &mut outgoing.0[0]);
-            if let (Some(cell), Some(images)) = (view.cell, images.0.first_mut()) {
-                let of_images = outgoing.0[0].len() - images.owed;
-                kernel.images(cell, images, &mut outgoing.0[0][of_images..]);
-            }
-            kernel.walls(&mut list.0[0]);
-            result.0[0] = (kernel.tally.losses(), kernel.trouble);
-        });
+        let moving = !view.poses.is_empty();
+        blocks.for_each(
+            work,
+            |block, (list, (facets, reactions), outgoing, result, images, force, torque)| {
+                let mut kernel = Kernel::<D, L, LEDGER> {
+                    view,
+                    laws,
+                    start: blocks.range(block).start,
+                    force,
+                    torque,
+                    tally: Tally::default(),
+                    trouble: None,
+                };
+                pass(&mut kernel, &mut list.0[0], &mut outgoing.0[0]);
+                if let (Some(cell), Some(images)) = (view.cell, images.0.first_mut()) {
+                    let of_images = outgoing.0[0].len() - images.owed;
+                    kernel.images(cell, images, &mut outgoing.0[0][of_images..]);
+                }
+                let reactions = &mut reactions.0[0];
+                if moving {
+                    reactions.fill(Reaction::default());
+                    kernel.walls::<true>(&mut list.0[0], reactions);
+                } else {
+                    kernel.walls::<false>(&mut list.0[0], reactions);
+                }
+                kernel.facets(&mut facets.0[0], reactions);
+                result.0[0] = (kernel.tally.losses(), kernel.trouble);
+            },
+        );
     }
 }
 
@@ -224,12 +248,18 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let largest = view.radius.iter().fold(0.0, |a: f64, &b| a.max(b));
         self.grid.fill(view.position, 2.0 * largest + skin);
         if let Some(order) = order {
-            crate::lists::reorder(&mut self.lists, self.blocks, order, L::reversed);
+            self.regroup(view.walls, self.blocks, &crate::lists::places(order));
         }
         let (grid, blocks) = (&self.grid, self.blocks);
         blocks.for_each(PerBlock(&mut self.lists), |block, list| {
             list.0[0].build(view, grid, blocks.range(block), skin);
         });
+        self.reactions.iter_mut().for_each(|of_block| of_block.resize(view.poses.len(), Reaction::default()));
+        if facet_lists::needed(view.walls) {
+            blocks.for_each(PerBlock(&mut self.facets), |block, list| {
+                list.0[0].build(view, blocks.range(block), skin);
+            });
+        }
         for (block, (list, outgoing)) in self.lists.iter().zip(&mut self.outgoing).enumerate() {
             let owed = list.partners.iter().filter(|&&p| (p as usize) < blocks.range(block).start).count();
             outgoing.clear();
@@ -239,6 +269,23 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         if let Some(cell) = view.cell {
             self.list_images(view, cell, order, skin, largest);
         }
+    }
+
+    fn regroup(&mut self, walls: &[Wall<D>], blocks: Blocks, place: &[u32]) {
+        crate::lists::regroup(&mut self.lists, (self.blocks, blocks), place, L::reversed);
+        facet_lists::regroup(&mut self.facets, walls, blocks, place);
+        self.resize(blocks);
+    }
+
+    fn resize(&mut self, blocks: Blocks) {
+        let count = blocks.count();
+        self.blocks = blocks;
+        self.lists.resize_with(count, BlockList::default);
+        self.facets.resize_with(count, FacetList::default);
+        self.reactions.resize_with(count, Vec::new);
+        self.outgoing.resize_with(count, Vec::new);
+        self.inbox.resize_with(count, Vec::new);
+        self.results.resize(count, (Losses::default(), None));
     }
 
     fn push(&mut self, view: &View<'_, D>, ledger: bool, force: &mut [D::Vec], torque: &mut [D::Spin]) {
@@ -255,6 +302,15 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             force[receipt.grain as usize] += owed.force;
             if L::TANGENTIAL {
                 torque[receipt.grain as usize] += owed.torque;
+            }
+        }
+    }
+
+    fn add_reactions(&self, to: &mut [Reaction<D>]) {
+        for (wall, sum) in to.iter_mut().enumerate() {
+            for of_block in &self.reactions {
+                sum.force += of_block[wall].force;
+                sum.power += of_block[wall].power;
             }
         }
     }
@@ -281,13 +337,18 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
                 let (first, wall) = (near.grain as usize, near.wall as usize);
-                let met = meet_wall::<D, L>(view, first, &view.walls[wall]);
+                let met = if view.poses.is_empty() {
+                    meet_wall::<D, L, false>(view, first, wall)
+                } else {
+                    meet_wall::<D, L, true>(view, first, wall)
+                };
                 if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
                     let branch = meeting.normal * (view.radius[first] - meeting.overlap);
                     visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
                 }
             }
+            facet_lists::visit(&self.facets[block], view, laws, visit);
         }
         self.visit_images(view, visit);
     }
@@ -325,15 +386,23 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         self.laws = (0..n * n).map(|k| L::between(&materials.pair(k / n, k % n), tension)).collect();
     }
 
-    fn save(&self, grains: &Grains<D>, to: &mut Section) {
+    fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section) {
         crate::lists::save(&self.lists, self.blocks, &grains.id, to);
+        facet_lists::save(&self.facets, walls, &grains.id, to);
         if !self.images.is_empty() {
             images::save(&self.images, &grains.id, to);
         }
     }
 
-    fn restore(&mut self, from: &Section, grains: &Grains<D>) -> Result<(), SnapshotError> {
-        crate::lists::restore(&mut self.lists, self.blocks, &grains.id, from)?;
+    fn restore(
+        &mut self,
+        from: &Section,
+        grains: &Grains<D>,
+        walls: &[Wall<D>],
+    ) -> Result<(), SnapshotError> {
+        let places = Places::of(&grains.id)?;
+        crate::lists::restore(&mut self.lists, self.blocks, &places, from)?;
+        facet_lists::restore(&mut self.facets, walls, self.blocks, &places, from)?;
         if !self.images.is_empty() {
             images::restore(&mut self.images, self.blocks, &grains.id, from)?;
         }
@@ -354,10 +423,11 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn bytes(&self) -> (usize, usize) {
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
+        let facets: usize = self.facets.iter().map(FacetList::bytes).sum();
         let outgoing: usize = self.outgoing.iter().map(|o| o.capacity() * size_of::<Owed<D>>()).sum();
         let inbox: usize = self.inbox.iter().map(|i| i.capacity() * size_of::<Receipt>()).sum();
         let images: usize = self.images.iter().map(ImageList::bytes).sum();
-        (lists + outgoing + inbox + images, size_of::<L::Memory>())
+        (lists + facets + outgoing + inbox + images, size_of::<L::Memory>())
     }
 }
 
@@ -370,25 +440,4 @@ fn pass<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     outgoing: &mut [Owed<D>],
 ) {
     kernel.pairs(list, outgoing);
-}
-
-fn contact_of<D: Dim, L: ContactLaw<D>>(
-    law: &L,
-    meeting: &Meeting<D>,
-    memory: L::Memory,
-    (first, partner): (usize, Partner),
-    branch: D::Vec,
-) -> Contact<D> {
-    let (load, energy) = law.at_rest(meeting, memory);
-    Contact {
-        first,
-        partner,
-        branch,
-        shift: [0; 3],
-        normal: meeting.normal,
-        overlap: meeting.overlap,
-        normal_force: load.normal,
-        force: push_of::<D, L>(&load, meeting.normal),
-        energy,
-    }
 }

@@ -2,14 +2,17 @@
 
 use crate::cell::Cell;
 use crate::choice::{choose_law, needs_rotation};
+use crate::clock::Clock;
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
 use crate::kernel::{Trouble, View};
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
+use crate::moving::{Movers, Reaction};
 use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
-use crate::wall::Wall;
+use crate::traffic::Traffic;
+use crate::wall::{Shape, Wall};
 use crate::{lists, motion};
 use granular_core::solver::check_step;
 use granular_core::{
@@ -32,6 +35,9 @@ const SMALLEST_BLOCK: usize = 128;
 pub struct Dem<D: Dim> {
     pub(crate) materials: Materials,
     pub(crate) walls: Vec<Wall<D>>,
+    pub(crate) movers: Movers<D>,
+    pub(crate) clock: Clock,
+    pub(crate) traffic: Traffic<D>,
     pub(crate) gravity: D::Vec,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
@@ -96,7 +102,11 @@ impl<D: Dim> Dem<D> {
             return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
         }
         let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
+        let movers = Movers::of(&walls)?;
         let mut dem = Self {
+            movers,
+            clock: Clock::default(),
+            traffic: Traffic::new(list.len()),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
             speeds: vec![0; blocks.count()],
@@ -138,7 +148,7 @@ impl<D: Dim> Dem<D> {
 
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
-        !self.grains.spin.is_empty()
+        self.pairs.tangential()
     }
 
     /// The grain of a stable identifier, as it is now. Searches: for a few grains.
@@ -196,6 +206,40 @@ impl<D: Dim> Dem<D> {
         found.is_some()
     }
 
+    /// Starts or holds the moving wall of this name, where it is. Returns whether there is one.
+    pub fn set_moving(&mut self, name: &str, moves: bool) -> bool {
+        let Some(wall) = self.walls.iter().position(|wall| wall.name == name) else { return false };
+        let time = self.clock.time();
+        let found = self.movers.set_running(wall, moves, time);
+        if found {
+            self.movers.place(time);
+        }
+        found
+    }
+
+    /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
+    pub fn wall_work(&self) -> f64 {
+        self.movers.work
+    }
+
+    /// Where a wall is \[m\]: the point with which a plane was given, moved along with it; for other walls how far they
+    /// were shifted. Turning does not count.
+    ///
+    /// # Panics
+    /// When there is no wall of this index.
+    pub fn wall_position(&self, wall: usize) -> D::Vec {
+        let shift = self.movers.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
+        match self.walls[wall].shape {
+            Shape::Plane { point, .. } => point + shift,
+            _ => shift,
+        }
+    }
+
+    /// Simulated time since the start \[s\].
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
     /// Changes gravity \[m/s^2\].
     pub fn set_gravity(&mut self, gravity: D::Vec) {
         self.change(|dem| dem.gravity = gravity);
@@ -242,7 +286,7 @@ impl<D: Dim> Dem<D> {
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
         let cell = self.cell.as_deref();
-        View { cell, ..view_of(&self.grains, &self.walls, &self.options, self.last_dt) }
+        View { cell, ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt) }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
@@ -250,8 +294,29 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.skin.max(4.0 * stride);
         self.travel = 0.0;
-        let view = view_of(&self.grains, &self.walls, &self.options, self.last_dt);
+        let (_, largest) = self.grains.radius_range();
+        self.movers.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let view = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
         self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
+    }
+
+    /// Reach of the lists for grains of this mean diameter \[m\].
+    pub(crate) fn use_skin_of(&mut self, diameter: f64) {
+        self.skin = self.options.skin * diameter;
+    }
+
+    /// Cuts another number of grains into blocks.
+    pub(crate) fn cut(&mut self) -> Blocks {
+        self.blocks = Blocks::about(self.len(), BLOCKS, SMALLEST_BLOCK);
+        self.speeds.resize(self.blocks.count(), 0);
+        self.blocks
+    }
+
+    /// Takes up that grains were put in or taken out; `place` tells where each is now.
+    pub(crate) fn regroup(&mut self, place: &[u32]) {
+        let blocks = self.cut();
+        self.pairs.regroup(&self.walls, blocks, place);
+        self.list(0.0, None);
     }
 
     /// Sorts grains in memory when the count of steps says so.
@@ -270,7 +335,11 @@ impl<D: Dim> Dem<D> {
 
     /// One step between its two halves: lists, loads, kick.
     fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
-        let stride = motion::fastest(&self.speeds) * dt;
+        let mut stride = motion::fastest(&self.speeds) * dt;
+        if !self.movers.is_empty() {
+            stride = stride.max(self.movers.fastest(dt) * dt);
+            self.movers.place_in_step(self.clock.time(), dt);
+        }
         if !stride.is_finite() {
             return Err(self.not_finite());
         }
@@ -280,12 +349,27 @@ impl<D: Dim> Dem<D> {
         }
         self.push(dt, stride);
         self.last_dt = dt;
+        if !self.movers.is_empty() {
+            self.move_walls(dt);
+        }
         let (pairs, gravity) = (self.pairs.as_ref(), self.gravity);
         motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
         self.steps += 1;
+        self.clock.step();
         let (losses, trouble) = self.pairs.outcome();
         self.losses += losses;
+        if !self.losses.total().is_finite() {
+            let (solver, quantity, step) = ("dem", "losses of energy", self.steps);
+            return Err(StepError::NotFinite { solver, quantity, id: 0, step });
+        }
         trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
+    }
+
+    /// Tells walls how grains pushed them.
+    pub(crate) fn move_walls(&mut self, dt: f64) {
+        self.movers.reactions.fill(Reaction::default());
+        self.pairs.add_reactions(&mut self.movers.reactions);
+        self.movers.take_reactions(dt, self.options.ledger);
     }
 
     /// Writes the loads of all contacts where the accelerations will be.
@@ -298,7 +382,7 @@ impl<D: Dim> Dem<D> {
             dt,
             predicts: self.pairs.predicts(),
             margin,
-            ..view_of(&self.grains, &self.walls, &self.options, self.last_dt)
+            ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
         };
         self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
         (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
@@ -325,7 +409,7 @@ impl<D: Dim> Dem<D> {
 
 pub(crate) fn view_of<'a, D: Dim>(
     grains: &'a Grains<D>,
-    walls: &'a [Wall<D>],
+    (walls, movers): (&'a [Wall<D>], &'a Movers<D>),
     options: &Options,
     last_dt: f64,
 ) -> View<'a, D> {
@@ -340,6 +424,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         material: &grains.material,
         first_material: grains.first_material,
         walls,
+        poses: &movers.poses,
         cell: None,
         dt: 0.0,
         last_dt,
@@ -371,6 +456,7 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.clock.run_at(dt);
         if self.cell.is_some() {
             return self.advance_in_cell(dt, steps);
         }
@@ -379,11 +465,13 @@ impl<D: Dim> Solver for Dem<D> {
         for remaining in (0..steps).rev() {
             if !opened {
                 self.sort_if_due();
+                self.exchange_if_due();
                 motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
             }
-            opened = remaining > 0 && !self.sorts_after(1);
+            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
             self.load_and_kick(dt, opened)?;
         }
+        self.movers.place(self.clock.time());
         Ok(())
     }
 

@@ -48,6 +48,8 @@ pub(crate) struct Grains<D: Dim> {
     pub(crate) id: Vec<u32>,
     /// Empty when all grains are of one material.
     pub(crate) material: Vec<u8>,
+    /// Whether there are several materials; with no grains the array does not tell.
+    several_materials: bool,
     pub(crate) first_material: u8,
     /// Empty when nothing makes grains turn; so are the two arrays of spins below.
     pub(crate) spin: Vec<D::Spin>,
@@ -76,6 +78,7 @@ impl<D: Dim> Grains<D> {
             mass: list.iter().map(mass).collect(),
             id: (0..list.len() as u32).collect(),
             material: if uniform { Vec::new() } else { list.iter().map(|grain| grain.material.0).collect() },
+            several_materials: !uniform,
             first_material,
             middle_velocity: vec![D::Vec::ZERO; list.len()],
             ..Self::default()
@@ -87,6 +90,50 @@ impl<D: Dim> Grains<D> {
         self.spin = spins.collect();
         self.spin_acceleration = vec![D::Spin::ZERO; self.spin.len()];
         self.middle_spin = vec![D::Spin::ZERO; self.spin.len()];
+    }
+
+    /// Makes sure that grains of this material can be told from others.
+    pub(crate) fn expect_material(&mut self, material: MaterialId) {
+        if self.len() == 0 && !self.several_materials {
+            self.first_material = material.0;
+        } else if !self.several_materials && material.0 != self.first_material {
+            self.several_materials = true;
+            self.material = vec![self.first_material; self.len()];
+        }
+    }
+
+    /// Adds a grain with its identifier, mass \[kg\] and acceleration \[m/s^2\].
+    pub(crate) fn push(&mut self, grain: &Grain<D>, (id, mass, gravity): (u32, f64, D::Vec), turns: bool) {
+        self.position.push(grain.position);
+        self.velocity.push(grain.velocity);
+        self.acceleration.push(gravity);
+        self.radius.push(grain.radius);
+        self.mass.push(mass);
+        self.id.push(id);
+        self.middle_velocity.push(D::Vec::ZERO);
+        if self.several_materials {
+            self.material.push(grain.material.0);
+        }
+        if turns {
+            self.spin.push(grain.spin);
+            self.spin_acceleration.push(D::Spin::ZERO);
+            self.middle_spin.push(D::Spin::ZERO);
+        }
+    }
+
+    /// Takes out the grains that do not stay; the others keep their order.
+    pub(crate) fn retain(&mut self, stays: &[bool]) {
+        keep(&mut self.position, stays);
+        keep(&mut self.velocity, stays);
+        keep(&mut self.acceleration, stays);
+        keep(&mut self.radius, stays);
+        keep(&mut self.mass, stays);
+        keep(&mut self.id, stays);
+        keep(&mut self.material, stays);
+        keep(&mut self.spin, stays);
+        keep(&mut self.spin_acceleration, stays);
+        keep(&mut self.middle_velocity, stays);
+        keep(&mut self.middle_spin, stays);
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -137,9 +184,20 @@ impl<D: Dim> Grains<D> {
         to.put("spin acceleration", &self.spin_acceleration);
     }
 
-    pub(crate) fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let (all, material, turning) = (self.len(), self.material.len(), self.spin.len());
+    /// Restores all grains; their number may differ only where grains come and go.
+    pub(crate) fn restore(
+        &mut self,
+        from: &Section,
+        turns: bool,
+        any_number: bool,
+    ) -> Result<(), SnapshotError> {
+        let position: Vec<D::Vec> = from.array("position")?;
+        let all = if any_number { position.len() } else { self.len() };
+        let turning = if turns { all } else { 0 };
+        let material = if self.several_materials { all } else { 0 };
         self.position = from.array_of("position", all)?;
+        self.middle_velocity = vec![D::Vec::ZERO; all];
+        self.middle_spin = vec![D::Spin::ZERO; turning];
         self.velocity = from.array_of("velocity", all)?;
         self.acceleration = from.array_of("acceleration", all)?;
         self.radius = from.array_of("radius", all)?;
@@ -166,6 +224,11 @@ pub(crate) fn check_finite(entry: &str, fits: bool) -> Result<(), SnapshotError>
     }
     let found = "a value that is not finite or out of range".to_owned();
     Err(SnapshotError::Damaged { place: format!("solver/{entry}"), found })
+}
+
+fn keep<T>(values: &mut Vec<T>, stays: &[bool]) {
+    let mut stays = stays.iter();
+    values.retain(|_| stays.next().copied().unwrap_or(true));
 }
 
 fn permute<T: Copy>(values: &mut Vec<T>, order: &[u32]) {

@@ -1,9 +1,12 @@
 //! The pass over the contacts of a block: who meets within the step, and the load between them.
 
 use crate::cell::Cell;
+use crate::contacts::{Contact, Partner};
 use crate::law::{ContactLaw, Load, Meeting};
 use crate::ledger::Tally;
 use crate::lists::BlockList;
+use crate::moving::Reaction;
+use crate::pose::Pose;
 use crate::wall::Wall;
 use granular_core::{Dim, Linear};
 
@@ -21,6 +24,8 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) material: &'a [u8],
     pub(crate) first_material: u8,
     pub(crate) walls: &'a [Wall<D>],
+    /// Where each wall is; empty when none moves.
+    pub(crate) poses: &'a [Pose<D>],
     pub(crate) cell: Option<&'a Cell<D>>,
     /// The step \[s\]; zero between steps.
     pub(crate) dt: f64,
@@ -190,27 +195,53 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         Some(given)
     }
 
+    /// Loads of walls; with `MOVING`, of walls that may move.
     #[inline(always)]
-    pub(crate) fn walls(&mut self, list: &mut BlockList<L::Memory>) {
+    pub(crate) fn walls<const MOVING: bool>(
+        &mut self,
+        list: &mut BlockList<L::Memory>,
+        reactions: &mut [Reaction<D>],
+    ) {
         let view = self.view;
         self.tally.at_walls();
         for (near, memory) in list.near_walls.iter().zip(&mut list.wall_memory) {
-            let first = near.grain as usize;
-            let wall = &view.walls[near.wall as usize];
-            let laws = self.laws;
-            let law = laws.between(view.material_of(first), wall.material.0);
-            let Some((meeting, arm)) = meet_wall::<D, L>(view, first, wall) else {
+            let (first, wall) = (near.grain as usize, near.wall as usize);
+            let Some((meeting, arm)) = meet_wall::<D, L, MOVING>(view, first, wall) else {
+                let law = self.laws.between(view.material_of(first), view.walls[wall].material.0);
                 law.release(memory, &mut self.tally);
                 *memory = L::Memory::default();
                 continue;
             };
-            self.guard(first, meeting.overlap, view.radius[first]);
-            let load = law.load(&meeting, memory, &mut self.tally);
-            let local = first - self.start;
-            self.force[local] += push_of::<D, L>(&load, meeting.normal);
-            if L::TANGENTIAL {
-                self.torque[local] += load.rolling - load.tangential * arm;
-            }
+            let reaction = if MOVING { reactions.get_mut(wall) } else { None };
+            self.push_wall(first, wall, (&meeting, arm), memory, reaction);
+        }
+    }
+
+    /// Adds the load of a wall on a grain.
+    #[inline(always)]
+    pub(crate) fn push_wall(
+        &mut self,
+        first: usize,
+        wall: usize,
+        (meeting, arm): (&Meeting<D>, f64),
+        memory: &mut L::Memory,
+        reaction: Option<&mut Reaction<D>>,
+    ) {
+        let view = self.view;
+        let law = self.laws.between(view.material_of(first), view.walls[wall].material.0);
+        self.guard(first, meeting.overlap, view.radius[first]);
+        let load = law.load(meeting, memory, &mut self.tally);
+        let local = first - self.start;
+        let push = push_of::<D, L>(&load, meeting.normal);
+        self.force[local] += push;
+        if L::TANGENTIAL {
+            self.torque[local] += load.rolling - load.tangential * arm;
+        }
+        if let Some(reaction) = reaction {
+            let pose = &view.poses[wall];
+            let (velocity, _) = pose.velocities(view.position[first] - meeting.normal * arm);
+            reaction.force -= push;
+            reaction.power += push.dot(velocity) + load.rolling.dot(pose.rate.spin);
         }
     }
 
@@ -322,28 +353,62 @@ pub(crate) fn meet_other<D: Dim, L: ContactLaw<D>>(
     Some((meeting, (own_arm, other.arm)))
 }
 
+/// A piece of surface that a grain may meet.
+pub(crate) struct Surface<D: Dim> {
+    /// Unit normal towards the grain.
+    pub(crate) normal: D::Vec,
+    pub(crate) overlap: f64,
+    /// Radius of the held grain that it belongs to; none for a wall.
+    pub(crate) ball: Option<f64>,
+}
+
 /// The meeting of a grain and a wall, and the lever arm.
 #[inline(always)]
-pub(crate) fn meet_wall<D: Dim, L: ContactLaw<D>>(
+pub(crate) fn meet_wall<D: Dim, L: ContactLaw<D>, const MOVING: bool>(
     view: &View<'_, D>,
     first: usize,
-    wall: &Wall<D>,
+    wall: usize,
 ) -> Option<(Meeting<D>, f64)> {
+    let shape = &view.walls[wall].shape;
+    let (position, radius) = (view.position[first], view.radius[first]);
+    if MOVING {
+        let pose = &view.poses[wall];
+        let (distance, normal) = shape.distance(pose.within_wall(position));
+        let surface = Surface { normal: pose.out_of_wall(normal), overlap: radius - distance, ball: None };
+        return meet_surface::<D, L>(view, first, &surface, Some(pose));
+    }
+    let (distance, normal) = shape.distance(position);
+    meet_surface::<D, L>(view, first, &Surface { normal, overlap: radius - distance, ball: None }, None)
+}
+
+/// The meeting of a grain and a piece of surface at rest or in motion, and the lever arm.
+#[inline(always)]
+pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    surface: &Surface<D>,
+    pose: Option<&Pose<D>>,
+) -> Option<(Meeting<D>, f64)> {
+    let Surface { normal, overlap, ball } = *surface;
     let radius = view.radius[first];
-    let (distance, normal) = wall.shape.distance(view.position[first]);
-    let overlap = radius - distance;
-    let still = Other {
+    // A wall does not give way: the contact lies on its surface. A held grain does.
+    let given = if ball.is_some() { 1.0 } else { 2.0 };
+    let arm = radius - given * view.arm_share * overlap;
+    let mut other = Other {
         velocity: D::Vec::ZERO,
         spin: D::Spin::ZERO,
         start_velocity: D::Vec::ZERO,
         start_spin: D::Spin::ZERO,
+        // Velocities are those at the contact.
         arm: 0.0,
     };
-    // A wall does not give way: the contact lies on its surface.
-    let arm = radius - 2.0 * view.arm_share * overlap;
-    let mut meeting = meeting::<D, L>(view, first, arm, normal, overlap, &still)?;
+    if let Some(pose) = pose {
+        (other.velocity, other.start_velocity) = pose.velocities(view.position[first] - normal * arm);
+        (other.spin, other.start_spin) = (pose.rate.spin, pose.start_rate.spin);
+    }
+    let mut meeting = meeting::<D, L>(view, first, arm, normal, overlap, &other)?;
     meeting.effective_mass = view.mass[first];
-    meeting.effective_radius = radius;
+    meeting.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
     Some((meeting, arm))
 }
 
@@ -362,4 +427,26 @@ pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
         None
     };
     met.map(|(meeting, _)| meeting)
+}
+
+/// A contact as outputs see it.
+pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
+    law: &L,
+    meeting: &Meeting<D>,
+    memory: L::Memory,
+    (first, partner): (usize, Partner),
+    branch: D::Vec,
+) -> Contact<D> {
+    let (load, energy) = law.at_rest(meeting, memory);
+    Contact {
+        first,
+        partner,
+        branch,
+        shift: [0; 3],
+        normal: meeting.normal,
+        overlap: meeting.overlap,
+        normal_force: load.normal,
+        force: push_of::<D, L>(&load, meeting.normal),
+        energy,
+    }
 }

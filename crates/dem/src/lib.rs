@@ -35,9 +35,12 @@
 
 pub mod cell;
 mod choice;
+mod clock;
 pub mod coarse;
 mod contacts;
 mod dem;
+mod facet_lists;
+mod facets;
 mod grains;
 mod kernel;
 pub mod law;
@@ -46,17 +49,22 @@ mod limits;
 mod lists;
 pub mod material;
 mod motion;
+mod moving;
+mod pose;
+mod servo;
 mod setup;
 mod show;
 #[cfg(feature = "serde")]
 pub mod spec;
 mod state;
+mod traffic;
 pub mod wall;
 
 pub use cell::{Cell, CellControl, Control, Matrix};
 pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
 pub use dem::Dem;
+pub use facets::Facets;
 pub use grains::Grain;
 pub use law::{
     ContactLaw, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, LinearRolling, Rolling, Twisting,
@@ -66,8 +74,11 @@ pub use limits::stability_step;
 pub use material::{
     Elasticity, HertzImpact, Material, MaterialId, Materials, PairProperties, SetupError, Tension,
 };
+pub use moving::WallMotion;
+pub use servo::Servo;
 pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use show::Energies;
+pub use traffic::{Exchanged, Inlet, Outlet};
 pub use wall::{Shape, Wall};
 
 /// Disks in the plane, per metre of depth.

@@ -5,6 +5,7 @@ mod stiffest;
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
 use crate::setup::LeverArm;
+use crate::wall::Shape;
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
 use stiffest::{Oscillator, Stiffest};
 
@@ -66,6 +67,7 @@ impl<D: Dim> Dem<D> {
                 tightest.names, tightest.meeting
             ),
         });
+        report.steps.extend(self.servo_limits(&stiffest));
         report.bounds.push(self.softness(&stiffest));
         report.bounds.push(Bound {
             name: "overlap at the start",
@@ -83,15 +85,41 @@ impl<D: Dim> Dem<D> {
         if self.cell.is_some() {
             return kissing;
         }
-        kissing.min((self.len().saturating_sub(1) + self.walls.len()).max(1))
+        let surfaces: usize = self
+            .walls
+            .iter()
+            .map(|wall| match &wall.shape {
+                Shape::Facets(facets) => facets.len(),
+                _ => 1,
+            })
+            .sum();
+        kissing.min((self.len().saturating_sub(1) + surfaces).max(1))
+    }
+
+    /// A wall under a force swings on the springs of the grains at it, of which a layer across the sample has
+    /// about `2 n^((d - 1) / d)`.
+    fn servo_limits(&self, pairs: &[Stiffest]) -> Option<StepLimit> {
+        let layer = 2.0 * (self.len() as f64).powf(1.0 - 1.0 / D::N as f64);
+        let grains = layer.min(self.len() as f64).max(1.0);
+        let stiffness = pairs.iter().map(|pair| pair.stiffness).fold(0.0, f64::max);
+        let (wall, servo) = self.movers.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
+        Some(StepLimit {
+            name: "wall under a force",
+            dt: 2.0 * (servo.mass / (grains * stiffness)).sqrt(),
+            rule: StepRule::AtMost,
+            why: format!(
+                "`{}` of {:.3e} kg on the springs of {grains:.0} grains",
+                self.walls[wall].name, servo.mass
+            ),
+        })
     }
 
     /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
     /// through the height of the sample.
     fn softness(&self, pairs: &[Stiffest]) -> Bound {
-        let fastest = self.fastest_impact();
-        let (smallest, _) = self.grains.radius_range();
-        let deepest = pairs.iter().map(|pair| pair.deepest).fold(0.0, f64::max);
+        let smallest = self.smallest_radius();
+        let hardest = pairs.iter().max_by(|a, b| a.deepest.total_cmp(&b.deepest));
+        let (deepest, fastest) = hardest.map_or((0.0, 0.0), |pair| (pair.deepest, pair.speed));
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
@@ -102,19 +130,35 @@ impl<D: Dim> Dem<D> {
         }
     }
 
-    /// The fastest speed there can be \[m/s\]: present speeds, and a fall through the height of
-    /// the sample.
-    pub(crate) fn fastest_impact(&self) -> f64 {
+    /// The fastest present speed, and that of a fall through the height of the sample \[m/s\].
+    pub(crate) fn fastest_speeds(&self) -> (f64, f64) {
         let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
         let gravity = self.gravity.length();
         let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        speed.max(fall)
+        let coming = self.traffic.inlets().map(|inlet| inlet.velocity.length()).fold(0.0, f64::max);
+        (speed.max(coming) + self.movers.fastest_ever(), fall)
     }
 
+    /// Radius of the smallest grain that there is or may come in \[m\].
+    pub(crate) fn smallest_radius(&self) -> f64 {
+        let of_inlets = self.traffic.inlets().flat_map(|inlet| inlet.radii.iter().copied());
+        of_inlets.fold(self.grains.radius_range().0, f64::min)
+    }
+
+    /// Height of the sample \[m\]; zero without gravity.
     pub(crate) fn extent_along_gravity(&self) -> f64 {
-        let direction = self.gravity * (1.0 / self.gravity.length());
+        let gravity = self.gravity.length();
+        if gravity == 0.0 {
+            return 0.0;
+        }
+        let direction = self.gravity * (1.0 / gravity);
         let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
-        let lowest = -self.blocks.largest(|i| self.grains.position[i].dot(direction));
+        let deepest = self.blocks.largest(|i| self.grains.position[i].dot(direction));
+        // Grains that come in fall as far as those that are there.
+        let corners = self.traffic.inlets().flat_map(|inlet| [inlet.low, inlet.high]);
+        let heights = corners.map(|corner| -corner.dot(direction));
+        let (highest, lowest) =
+            heights.fold((highest, -deepest), |(high, low), height| (high.max(height), low.min(height)));
         (highest - lowest).max(0.0)
     }
 

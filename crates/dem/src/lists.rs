@@ -6,6 +6,7 @@
 
 use crate::contacts::Receipt;
 use crate::kernel::View;
+use crate::wall::Shape;
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored};
 use std::ops::Range;
@@ -74,7 +75,12 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
             self.partners[from..].sort_unstable();
             self.starts.push(self.partners.len() as u32);
             for (wall, description) in view.walls.iter().enumerate() {
-                if !description.open && description.shape.distance(position).0 < radius + skin {
+                // Surfaces of many parts have lists of their own.
+                if description.open || matches!(description.shape, Shape::Facets(_)) {
+                    continue;
+                }
+                let point = view.poses.get(wall).map_or(position, |pose| pose.within_wall(position));
+                if description.shape.distance(point).0 < radius + skin {
                     self.near_walls.push(NearWall { grain: first as u32, wall: wall as u32 });
                 }
             }
@@ -106,10 +112,10 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
 
     /// Makes room for lists that change as a cell deforms, so that steps do not allocate.
     pub(crate) fn spare(&mut self) {
-        spare(&mut self.partners);
-        spare(&mut self.memory);
-        spare(&mut self.near_walls);
-        spare(&mut self.wall_memory);
+        spare(&mut self.partners, 0);
+        spare(&mut self.memory, 0);
+        spare(&mut self.near_walls, 0);
+        spare(&mut self.wall_memory, 0);
         self.live
             .reserve(self.memory.capacity().saturating_sub(self.live.len()).min(4 * self.partners.len()));
     }
@@ -161,39 +167,50 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     }
 }
 
-/// Doubles the room of a list that has nearly filled it.
-pub(crate) fn spare<T>(list: &mut Vec<T>) {
-    if list.capacity() < list.len() + list.len() / 4 + 4 {
-        list.reserve(list.len() + 16);
+/// Doubles the room of a list that has nearly filled it, and gives it `least` in any case.
+pub(crate) fn spare<T>(list: &mut Vec<T>, least: usize) {
+    if list.capacity() < least.max(list.len() + list.len() / 4 + 4) {
+        list.reserve((list.len() + 16).max(least.saturating_sub(list.len())));
     }
 }
 
-/// Moves memories to the blocks that own them after grains were re-sorted.
-pub(crate) fn reorder<M: Copy + Default + PartialEq>(
-    lists: &mut [BlockList<M>],
-    blocks: Blocks,
-    order: &[u32],
-    reversed: impl Fn(M) -> M,
-) {
+/// Where each grain is now, when `order` gives the old index of each place.
+pub(crate) fn places(order: &[u32]) -> Vec<u32> {
     let mut place = vec![0_u32; order.len()];
     for (new, &old) in order.iter().enumerate() {
         place[old as usize] = new as u32;
     }
+    place
+}
+
+/// Moves memories to the blocks that own them after grains were re-sorted, put in or taken out: `place` tells
+/// where each grain is now, [`u32::MAX`] for one that went.
+pub(crate) fn regroup<M: Copy + Default + PartialEq>(
+    lists: &mut Vec<BlockList<M>>,
+    (before, now): (Blocks, Blocks),
+    place: &[u32],
+    reversed: impl Fn(M) -> M,
+) {
     let mut pairs = Vec::new();
     let mut walls = Vec::new();
     for (block, list) in lists.iter_mut().enumerate() {
-        list.harvest(blocks.range(block).start);
+        list.harvest(before.range(block).start);
         pairs.append(&mut list.live);
         walls.append(&mut list.live_walls);
     }
+    lists.resize_with(now.count(), BlockList::default);
     for (first, second, memory) in pairs {
         let (a, b) = (place[first as usize], place[second as usize]);
-        let moved = if a > b { (a, b, memory) } else { (b, a, reversed(memory)) };
-        lists[moved.0 as usize / blocks.size()].live.push(moved);
+        if a != u32::MAX && b != u32::MAX {
+            let moved = if a > b { (a, b, memory) } else { (b, a, reversed(memory)) };
+            lists[moved.0 as usize / now.size()].live.push(moved);
+        }
     }
     for (near, memory) in walls {
         let grain = place[near.grain as usize];
-        lists[grain as usize / blocks.size()].live_walls.push((NearWall { grain, ..near }, memory));
+        if grain != u32::MAX {
+            lists[grain as usize / now.size()].live_walls.push((NearWall { grain, ..near }, memory));
+        }
     }
 }
 
@@ -241,34 +258,48 @@ pub(crate) fn save<M: Copy + Default + PartialEq + Stored>(
     to.put("wall contact memories", &wall_memories);
 }
 
+/// Where the grain of each identifier is.
+pub(crate) struct Places(Vec<(u32, u32)>);
+
+impl Places {
+    pub(crate) fn of(ids: &[u32]) -> Result<Self, SnapshotError> {
+        let mut places: Vec<(u32, u32)> =
+            ids.iter().enumerate().map(|(index, &id)| (id, index as u32)).collect();
+        places.sort_unstable();
+        match places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => Err(Self::damaged(format!("grain {} is there twice", pair[0].0))),
+            None => Ok(Self(places)),
+        }
+    }
+
+    pub(crate) fn find(&self, id: u32) -> Result<u32, SnapshotError> {
+        let found = self.0.binary_search_by_key(&id, |place| place.0);
+        found.map(|place| self.0[place].1).map_err(|_| Self::damaged(format!("grain {id} does not exist")))
+    }
+
+    fn damaged(found: String) -> SnapshotError {
+        SnapshotError::Damaged { place: "solver/contact pairs".to_owned(), found }
+    }
+}
+
 /// Restores memories; they enter the lists at the next build.
 pub(crate) fn restore<M: Copy + Default + PartialEq + Stored>(
     lists: &mut [BlockList<M>],
     blocks: Blocks,
-    ids: &[u32],
+    places: &Places,
     from: &Section,
 ) -> Result<(), SnapshotError> {
-    let mut place = vec![u32::MAX; ids.len()];
-    let damaged = |found: String| SnapshotError::Damaged { place: "solver/contact pairs".to_owned(), found };
-    for (index, &id) in ids.iter().enumerate() {
-        let slot = place.get_mut(id as usize).filter(|slot| **slot == u32::MAX);
-        *slot.ok_or_else(|| damaged(format!("grain {id} does not exist or is there twice")))? = index as u32;
-    }
-    let find = |id: u32| {
-        let found = place.get(id as usize).copied().filter(|&index| index != u32::MAX);
-        found.ok_or_else(|| damaged(format!("grain {id} does not exist")))
-    };
     lists.iter_mut().for_each(|list| *list = BlockList::default());
     let pairs: Vec<[u32; 2]> = from.array("contact pairs")?;
     let memories: Vec<M> = from.array_of("contact memories", pairs.len())?;
     for (&[first, second], &memory) in pairs.iter().zip(&memories) {
-        let (first, second) = (find(first)?, find(second)?);
+        let (first, second) = (places.find(first)?, places.find(second)?);
         lists[first as usize / blocks.size()].live.push((first, second, memory));
     }
     let walls: Vec<[u32; 2]> = from.array("wall contacts")?;
     let memories: Vec<M> = from.array_of("wall contact memories", walls.len())?;
     for (&[grain, wall], &memory) in walls.iter().zip(&memories) {
-        let grain = find(grain)?;
+        let grain = places.find(grain)?;
         lists[grain as usize / blocks.size()].live_walls.push((NearWall { grain, wall }, memory));
     }
     Ok(())

@@ -101,7 +101,7 @@ pub(crate) fn close_step<D: Dim>(
 /// Numbers that are not negative keep their order as bits, and whatever is not finite comes
 /// last: a maximum that does not lose a number that went wrong.
 #[inline(always)]
-fn order_of(square: f64) -> u64 {
+pub(crate) fn order_of(square: f64) -> u64 {
     square.to_bits()
 }
 

@@ -61,10 +61,10 @@ impl<D: Dim> Dem<D> {
     }
 
     /// What the energy ledger misses \[J\]: energy at the start and put in since, less the
-    /// present energy and all losses. `None` unless the ledger is kept.
+    /// present energy and all losses; the work of moving walls is put in. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        let put_in = self.injected + self.cell().map_or(0.0, |cell| cell.work());
+        let put_in = self.injected + self.movers.work + self.cell().map_or(0.0, |cell| cell.work());
         Some(initial + put_in - self.energies().mechanical() - self.losses.total())
     }
 
@@ -214,6 +214,10 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("unconnected", "1", "grains that do not belong to the main mass"),
 ];
 
+/// Shown when walls move.
+const WALL_WORK: (&str, &str, &str) =
+    ("wall_work", "J", "work of moving walls on grains; with the ledger only");
+
 const FIELDS: &[(&str, &str, &str)] = &[
     ("radius", "m", "radius"),
     ("velocity", "m/s", "velocity"),
@@ -250,6 +254,10 @@ impl<D: Dim> Dem<D> {
                 list.push(Shown { name, unit: "N", meaning: "force on the wall", kind: ShownAs::Number });
             }
         }
+        if !self.movers.is_empty() {
+            list.push(shown(ShownAs::Number)(&WALL_WORK));
+        }
+        list.extend(self.traffic_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(self.cell_catalogue());
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
@@ -259,6 +267,14 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn show_all(&self, sink: &mut dyn FieldSink) {
         self.show_numbers(sink);
         self.show_wall_forces(sink);
+        for ((name, unit, _), value) in
+            self.traffic_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
+        {
+            sink.number(name, unit, value);
+        }
+        if !self.movers.is_empty() && sink.wants(WALL_WORK.0) {
+            sink.number(WALL_WORK.0, WALL_WORK.1, self.wall_work());
+        }
         self.show_cell(sink);
         self.show_fields(sink);
         self.show_links(sink);

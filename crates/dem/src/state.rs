@@ -9,7 +9,7 @@ use granular_core::{Dim, Linear, Section, SnapshotError};
 impl<D: Dim> Dem<D> {
     pub(crate) fn save_state(&self, to: &mut Section) {
         self.grains.save(to);
-        self.pairs.save(&self.grains, to);
+        self.pairs.save(&self.grains, &self.walls, to);
         to.put_one("steps", self.steps);
         to.put_one("last step taken", self.last_dt);
         to.put("gravity", &[self.gravity]);
@@ -23,6 +23,16 @@ impl<D: Dim> Dem<D> {
         let friction: Vec<f64> =
             (0..self.materials.len()).map(|k| self.materials.get(MaterialId(k as u8)).friction).collect();
         to.put("friction", &friction);
+        if self.keeps_time() {
+            self.clock.save(to);
+        }
+        self.movers.save(to);
+        self.traffic.save(to);
+    }
+
+    /// Whether anything depends on the time.
+    fn keeps_time(&self) -> bool {
+        !self.movers.is_empty() || !self.traffic.is_empty()
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -33,8 +43,11 @@ impl<D: Dim> Dem<D> {
         // Not asked of the friction: grains go on turning after it was taken away.
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
         self.take_materials(turning);
-        self.grains.restore(from)?;
-        self.pairs.restore(from, &self.grains)?;
+        let (turns, any_number) = (self.pairs.tangential(), !self.traffic.is_empty());
+        self.grains.restore(from, turns, any_number)?;
+        let blocks = self.cut();
+        self.pairs.resize(blocks);
+        self.pairs.restore(from, &self.grains, &self.walls)?;
         if let Some(cell) = self.cell.as_deref_mut() {
             cell.restore(from)?;
         }
@@ -53,6 +66,12 @@ impl<D: Dim> Dem<D> {
         check_finite("gravity", self.gravity.is_finite())?;
         check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
         check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
+        if self.keeps_time() {
+            self.clock.restore(from)?;
+        }
+        self.movers.restore(from)?;
+        self.movers.place(self.clock.time());
+        self.traffic.restore(from)?;
         self.list(0.0, None);
         Ok(())
     }

@@ -1,10 +1,13 @@
 //! Walls: planes, segments and boxes, each with its own material.
 
+use crate::facets::Facets;
 use crate::material::{MaterialId, SetupError};
+use crate::moving::WallMotion;
 use granular_core::{Dim, Linear, Vector};
+use std::sync::Arc;
 
 /// The surface of a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape<D: Dim> {
     /// A half-space: grains are on the side to which the normal points.
     Plane {
@@ -29,6 +32,9 @@ pub enum Shape<D: Dim> {
         /// Upper corner \[m\].
         high: D::Vec,
     },
+    /// A surface of many parts, touched from both sides: a chain of segments, a mesh of triangles, or
+    /// grains that are held.
+    Facets(Arc<Facets<D>>),
 }
 
 impl<D: Dim> Shape<D> {
@@ -38,6 +44,7 @@ impl<D: Dim> Shape<D> {
     pub fn distance(&self, point: D::Vec) -> (f64, D::Vec) {
         let nearest = match *self {
             Self::Plane { point: on, normal } => return ((point - on).dot(normal), normal),
+            Self::Facets(ref facets) => return facets.distance(point),
             Self::Segment { from, to } => {
                 let along = to - from;
                 let share = (point - from).dot(along) / along.length_squared();
@@ -51,7 +58,7 @@ impl<D: Dim> Shape<D> {
     }
 }
 
-/// A wall at rest.
+/// A wall, at rest unless it has a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wall<D: Dim> {
     /// Name, unique in a scene.
@@ -62,6 +69,10 @@ pub struct Wall<D: Dim> {
     pub material: MaterialId,
     /// Whether it is out of the way: an open gate.
     pub open: bool,
+    /// How it moves; the shape is where it begins.
+    pub motion: Option<WallMotion<D>>,
+    /// Whether a moving wall waits where it is until [`Dem::set_moving`](crate::Dem::set_moving).
+    pub held: bool,
 }
 
 impl<D: Dim> Wall<D> {
@@ -110,8 +121,60 @@ impl<D: Dim> Wall<D> {
         Ok(Self::of(name, Shape::Block { low, high }, material))
     }
 
+    /// A chain of segments through some points \[m\], touched from both sides and at its ends; `closed` joins the
+    /// last point to the first.
+    ///
+    /// # Errors
+    /// When there are fewer than two points, one is not finite, or two neighbours coincide.
+    pub fn chain(
+        name: &str,
+        points: &[D::Vec],
+        closed: bool,
+        material: MaterialId,
+    ) -> Result<Self, SetupError> {
+        let closing = if closed { points.first().zip(points.last()) } else { None };
+        let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
+        let corners: Vec<D::Vec> =
+            segments.chain(closing.map(|(&first, &last)| [last, first])).flatten().collect();
+        let facets = Facets::new(name, corners, 2)?;
+        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    }
+
+    /// A mesh of triangles, three corners \[m\] each, touched from both sides, at its faces, edges and corners. It
+    /// need not be closed and its triangles need not share corners. (In the plane a triangle is a filled one.)
+    ///
+    /// # Errors
+    /// When there is no triangle, corners are left over, one is not finite, or those of a triangle coincide.
+    pub fn triangles(name: &str, corners: Vec<D::Vec>, material: MaterialId) -> Result<Self, SetupError> {
+        if !corners.len().is_multiple_of(3) {
+            let what = format!("number of corners of wall `{name}`");
+            return Err(SetupError::new(what, corners.len() as f64, "three for each triangle"));
+        }
+        let facets = Facets::new(name, corners, 3)?;
+        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    }
+
+    /// A wall of grains that are held: centre \[m\] and radius \[m\] of each. They are not integrated; like any
+    /// wall they may move all together.
+    ///
+    /// # Errors
+    /// When there is none, or one has no finite position and positive radius.
+    pub fn held_grains(
+        name: &str,
+        grains: &[(D::Vec, f64)],
+        material: MaterialId,
+    ) -> Result<Self, SetupError> {
+        let facets = Facets::balls(name, grains)?;
+        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    }
+
+    /// The same wall with a motion; its shape is where it begins.
+    pub fn moving(self, motion: WallMotion<D>) -> Self {
+        Self { motion: Some(motion), ..self }
+    }
+
     fn of(name: &str, shape: Shape<D>, material: MaterialId) -> Self {
-        Self { name: name.to_owned(), shape, material, open: false }
+        Self { name: name.to_owned(), shape, material, open: false, motion: None, held: false }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Verbs and flags.
 
 mod bench;
+mod calibrate;
 mod validate;
 
 use clap::{Args, Parser, Subcommand};
@@ -81,6 +82,9 @@ enum Verb {
     },
     /// Compare the program with known answers; exit code 1 when a required one is missed.
     Validate(validate::Validate),
+    /// Find what a continuum of the grains of a scene is like.
+    #[command(subcommand)]
+    Calibrate(calibrate::Calibrate),
     /// Measure error against run time, or speed.
     #[command(subcommand)]
     Bench(bench::Bench),
@@ -155,6 +159,7 @@ impl Verb {
                 Ok(())
             }
             Self::Bench(verb) => verb.execute(common),
+            Self::Calibrate(calibrate) => calibrate.execute(common),
             Self::Validate(verb) => verb.execute(common),
             Self::Info { path } => info(common, path.as_deref()),
         }

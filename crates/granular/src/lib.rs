@@ -4,6 +4,7 @@
 //! [`model::Model`], and run stage by stage.
 
 pub mod bench;
+pub mod calibrate;
 pub mod check;
 pub mod failure;
 pub mod figures;

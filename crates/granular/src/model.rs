@@ -1,5 +1,7 @@
 //! From a scene to a simulation: all checks that need no step, then the build by the method of the scene.
 
+mod boundaries;
+mod cell;
 mod fluid;
 mod grains;
 mod outputs;
@@ -53,6 +55,10 @@ pub enum Action {
     StopMotion,
     /// A wall opens or closes.
     Wall(String, bool),
+    /// A moving wall or an inlet starts or halts.
+    Moving(String, bool),
+    /// What drives the periodic cell.
+    Cell(granular_dem::CellControl),
 }
 
 /// Collects problems by scene path.

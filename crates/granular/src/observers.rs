@@ -3,6 +3,7 @@
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod profile;
+mod series;
 mod source;
 mod tracks;
 
@@ -15,7 +16,8 @@ use granular_core::{
     Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, Shown, ShownAs, Simulation,
     SnapshotError,
 };
-use granular_io::{Collection, TableWriter, write_fields, write_links_vtp};
+use granular_io::{Collection, write_fields, write_links_vtp};
+use series::Series;
 use source::Source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -66,11 +68,8 @@ pub(crate) fn of_output(
 
 /// One row of numbers per look.
 struct TableObserver {
-    path: PathBuf,
-    columns: Vec<(String, String)>,
+    series: Series,
     probes: Vec<String>,
-    writer: Option<TableWriter>,
-    last_step: Option<u64>,
 }
 
 impl TableObserver {
@@ -81,15 +80,7 @@ impl TableObserver {
         };
         let mut columns = vec![("time".to_owned(), "s".to_owned())];
         columns.extend(probes.iter().map(|name| (name.clone(), unit(name))));
-        let mut observer = Self { path, columns, probes: probes.to_vec(), writer: None, last_step: None };
-        if fresh {
-            observer.writer = Some(TableWriter::create(&observer.path, &observer.header())?);
-        }
-        Ok(observer)
-    }
-
-    fn header(&self) -> Vec<(&str, &str)> {
-        self.columns.iter().map(|(name, unit)| (name.as_str(), unit.as_str())).collect()
+        Ok(Self { series: Series::new(path, columns, fresh)?, probes: probes.to_vec() })
     }
 }
 
@@ -99,33 +90,24 @@ impl Observer for TableObserver {
         simulation.solver().show(&mut numbers);
         let mut row = vec![simulation.clock().time()];
         row.extend(self.probes.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
-        if let Some(writer) = &mut self.writer {
-            writer.row(&row)?;
-        }
-        self.last_step = Some(simulation.clock().step());
+        self.series.row(&row)?;
+        self.series.looked_at(simulation);
         Ok(Flow::Continue)
     }
 
     fn finish(&mut self, simulation: &Simulation) -> Result<(), ObserverError> {
-        if self.last_step != Some(simulation.clock().step()) {
+        if self.series.lacks(simulation) {
             self.observe(simulation)?;
         }
-        if let Some(writer) = &mut self.writer {
-            writer.sync()?;
-        }
-        Ok(())
+        self.series.sync()
     }
 
     fn save(&self, to: &mut Section) {
-        to.put_one("bytes", self.writer.as_ref().map_or(0, TableWriter::position));
-        to.put_one("last step", self.last_step.unwrap_or(u64::MAX));
+        self.series.save(to);
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let bytes: u64 = from.one("bytes")?;
-        self.last_step = Some(from.one("last step")?).filter(|&step| step != u64::MAX);
-        self.writer = Some(TableWriter::reopen_at(&self.path, &self.header(), bytes)?);
-        Ok(())
+        self.series.restore(from)
     }
 }
 

@@ -2,12 +2,16 @@
 //!
 //! These types are what a scene file may say. `docs/scene-reference.md` is generated from them.
 
+pub mod boundaries;
+pub mod cell;
 pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
+use boundaries::{InletSpec, MotionSpec, OutletSpec};
+use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, Length, Time};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec};
@@ -39,9 +43,18 @@ pub struct Scene {
     /// The fluid, described apart from the method.
     #[serde(default)]
     pub fluid: Option<FluidSpec>,
+    /// The periodic cell around the grains; none by default.
+    #[serde(default)]
+    pub cell: Option<CellSpec>,
     /// Walls of grains; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
+    /// Boxes in which grains come in during the run; none by default.
+    #[serde(default)]
+    pub inlets: Vec<InletSpec>,
+    /// Where grains are taken out during the run; nowhere by default.
+    #[serde(default)]
+    pub outlets: Vec<OutletSpec>,
     /// What happens, one stage after the other.
     pub stages: Vec<Stage>,
     /// The method, under a name of your choice, such as `{ "grains": Dem(()) }` or
@@ -100,6 +113,20 @@ pub enum Sample {
         material: String,
         /// How the grains are placed.
         packing: PackingSpec,
+        /// Random seed of sizes and places: the same seed gives the same sample.
+        #[serde(default = "default_seed")]
+        seed: u64,
+    },
+    /// Grains scattered in the periodic cell of the scene, which becomes a cube or square, to be compressed by a stage.
+    Cell {
+        /// Number of grains.
+        grains: usize,
+        /// Area or volume of the grains over that of the cell before anything moves; grains must not overlap.
+        solid_fraction: f64,
+        /// Sizes of the grains.
+        grading: GradingSpec,
+        /// Name of the material of the grains.
+        material: String,
         /// Random seed of sizes and places: the same seed gives the same sample.
         #[serde(default = "default_seed")]
         seed: u64,
@@ -203,6 +230,9 @@ pub enum WallSpec {
         /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
     },
     /// A straight line between two points, with grains on both sides.
     Segment {
@@ -217,6 +247,9 @@ pub enum WallSpec {
         /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
     },
     /// A solid block with edges along the axes; flat along one axis it is a plate.
     Block {
@@ -231,6 +264,76 @@ pub enum WallSpec {
         /// Name of the stage at whose start it goes out of the way; it stays by default.
         #[serde(default)]
         opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
+    },
+    /// Segments from point to point, with grains on both sides; one wall, whose joints are not felt.
+    Chain {
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
+        name: String,
+        /// Its points, one length per axis each.
+        points: Vec<Vec<Length>>,
+        /// Whether the last point is joined to the first.
+        #[serde(default)]
+        closed: bool,
+        /// Name of the material.
+        material: String,
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        #[serde(default)]
+        opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
+    },
+    /// Triangles of an STL file, text or binary, with grains on both sides; one wall, whose edges are not felt where it
+    /// is flat. In space only.
+    Mesh {
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
+        name: String,
+        /// Path of the file, from where the command is run.
+        file: String,
+        /// Length of one unit of the file; a metre by default.
+        #[serde(default = "metre")]
+        unit: Length,
+        /// Where the origin of the file is, one length per axis; at the origin by default.
+        #[serde(default)]
+        at: Vec<Length>,
+        /// Name of the material.
+        material: String,
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        #[serde(default)]
+        opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
+    },
+    /// Grains that are held, on a lattice in a box: a rough wall. Flat along an axis, the box is a row or a layer.
+    HeldGrains {
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
+        name: String,
+        /// Corner with the lowest coordinates; centres are placed from here.
+        low: Vec<Length>,
+        /// Corner with the highest coordinates.
+        high: Vec<Length>,
+        /// Diameter of the held grains.
+        diameter: Length,
+        /// Distance between their centres along each axis.
+        spacing: Length,
+        /// Greatest distance by which they are out of place along each axis; none by default.
+        #[serde(default)]
+        scatter: Length,
+        /// Random seed of the scatter.
+        #[serde(default = "default_seed")]
+        seed: u64,
+        /// Name of the material.
+        material: String,
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        #[serde(default)]
+        opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
     },
     /// A closed box around the grains, made of planes called `<name>_<axis>_low` and `_high`.
     Box {
@@ -243,6 +346,10 @@ pub enum WallSpec {
         /// Name of the material.
         material: String,
     },
+}
+
+fn metre() -> Length {
+    1.0.into()
 }
 
 /// A part of the run, such as settling under gravity or collapsing.
@@ -313,4 +420,10 @@ pub enum Change {
     Open(String),
     /// The wall of this name comes back.
     Close(String),
+    /// The moving wall or the inlet of this name starts; before, it waits.
+    Start(String),
+    /// The moving wall or the inlet of this name halts where it is.
+    Halt(String),
+    /// What drives the periodic cell.
+    Cell(CellChange),
 }

@@ -11,6 +11,7 @@
 //! # Ok::<(), granular::failure::Failure>(())
 //! ```
 
+mod boundaries;
 pub(crate) mod chance;
 mod claims;
 mod coarse;
@@ -78,6 +79,13 @@ pub const CASES: &[Case] = &[
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
+    Case {
+        name: "wall_forces",
+        about: "stress of contacts and forces on walls",
+        run: boundaries::wall_forces,
+    },
+    Case { name: "moving_walls", about: "pistons, belts, lids under a force", run: boundaries::moving_walls },
+    Case { name: "flat_surface", about: "a flat strip of parts is a plane", run: boundaries::flat_surface },
     Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
     Case { name: "coarse_graining", about: "continuum fields from grains", run: coarse::run },
     Case {

@@ -8,6 +8,7 @@
 //! | the list of such files, `.pvd` | [`Collection`] | ParaView |
 //! | all times in one file, `.vtkhdf` | `VtkHdfPoints`, `VtkHdfGrid` (cargo feature `hdf5`) | ParaView 5.13 |
 //! | states to go on from, `.bin` | [`SnapshotStore`], [`state_hash`] | this crate |
+//! | triangles of a surface, `.stl` | [`read_stl`] | most drawing programs |
 //! | figures, `.svg` and `.png` | [`figure::Chart`], [`figure::Panels`], [`figure::GrainFigure`], [`figure::MapFigure`] | everything |
 //! | any other file, whole or not at all | [`write_atomically`] | |
 //!
@@ -62,6 +63,7 @@ pub mod error;
 pub mod figure;
 pub mod frame;
 pub mod snapshot_file;
+pub mod stl;
 pub mod table;
 #[cfg(test)]
 mod testing;
@@ -74,6 +76,7 @@ pub use error::IoError;
 pub use figure::Figure;
 pub use frame::{Field, Frame, Number, Values};
 pub use snapshot_file::{Latest, SnapshotStore, hash_hex, read_snapshot, state_hash, write_snapshot};
+pub use stl::read_stl;
 pub use table::{Table, TableWriter, read_table};
 pub use vtk::{Collection, write_fields, write_links_vtp, write_vti, write_vtp};
 #[cfg(feature = "hdf5")]

@@ -43,6 +43,7 @@
 //! | [`Grading::EqualMass`] | same mass in every interval of diameter | \[Kumar2014, eq. 3.59, 3.60\] |
 //! | [`Lattice::Cubic`], [`Lattice::Hexagonal`] | regular packings of one size | \[Kumar2014, section 3.5.5\] |
 //! | [`ballistic`] with [`Sides::Walls`] or [`Sides::Periodic`] | random packing of disks | \[Vold1959, MeakinJullien1985\] |
+//! | [`scattered`] | start of a compression in a cell, plane and space | |
 //! | [`loose_lattice`] | start of a deposition under gravity, plane and space | \[Kumar2014, section 3.5.5\] |
 //!
 //! # Limits
@@ -65,6 +66,7 @@ mod grading;
 mod lattice;
 mod loose;
 mod random;
+mod scattered;
 
 pub use ballistic::{Deposit, Sides, Support, ballistic};
 pub use bands::{BAND_OVER_MEDIAN_DIAMETER, Bands, homogeneity, solid_fraction_bands};
@@ -73,3 +75,4 @@ pub use error::{GradingError, PackingError};
 pub use grading::{Grading, finer_by_volume, median_diameter};
 pub use lattice::Lattice;
 pub use loose::loose_lattice;
+pub use scattered::scattered;

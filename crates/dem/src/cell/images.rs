@@ -185,7 +185,7 @@ pub(crate) fn relocate<D: Dim, M: Copy + Default + PartialEq>(
             });
         }
     }
-    spare(scratch);
+    spare(scratch, 0);
     for &(pair, memory) in scratch.iter() {
         let (pair, swapped) = moved.pair(pair);
         let memory = if swapped { reversed(memory) } else { memory };
@@ -215,7 +215,7 @@ pub(crate) fn fill_inboxes<D: Dim, M>(
         }
     }
     for inbox in inboxes {
-        spare(inbox);
+        spare(inbox, blocks.size());
         inbox.sort_unstable_by_key(Receipt::order);
     }
 }

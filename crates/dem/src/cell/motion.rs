@@ -16,6 +16,7 @@
 use super::{Cell, Matrix};
 use crate::contacts::Pairs;
 use crate::grains::Grains;
+use crate::motion::order_of;
 use granular_core::{Blocks, Dim, Linear, PerBlock};
 
 /// Sums over the grains of a block.
@@ -43,6 +44,9 @@ pub(crate) fn open_step<D: Dim>(
     let start_gradient = gradient.times(&stretch);
     let deforms = cell.deforms();
     cell.start_velocity.resize(if deforms { grains.len() } else { 0 }, D::Vec::ZERO);
+    if !deforms {
+        return crate::motion::open_step(grains, blocks, dt, speeds);
+    }
     let low = cell.low;
     let work = (
         &mut grains.position[..],
@@ -59,19 +63,13 @@ pub(crate) fn open_step<D: Dim>(
         for k in 0..position.len() {
             let u = velocity[start + k];
             let mut predicted = u + acceleration[start + k] * half;
-            if deforms {
-                predicted -= gradient.apply(u) * half;
-                fastest = fastest.max(u.length_squared().to_bits()).max(predicted.length_squared().to_bits());
-                let place = position[k] - low;
-                start_velocity[k] = u + start_gradient.apply(place);
-                let moved = stretch.apply(place) + u * half;
-                position[k] = low + moved;
-                middle[k] = predicted + gradient.apply(moved);
-            } else {
-                fastest = fastest.max(u.length_squared().to_bits()).max(predicted.length_squared().to_bits());
-                position[k] += u * half;
-                middle[k] = predicted;
-            }
+            predicted -= gradient.apply(u) * half;
+            fastest = fastest.max(order_of(u.length_squared())).max(order_of(predicted.length_squared()));
+            let place = position[k] - low;
+            start_velocity[k] = u + start_gradient.apply(place);
+            let moved = stretch.apply(place) + u * half;
+            position[k] = low + moved;
+            middle[k] = predicted + gradient.apply(moved);
         }
         for k in 0..middle_spin.len() {
             middle_spin[k] = spin[start + k] + spin_acceleration[start + k] * half;
@@ -81,7 +79,7 @@ pub(crate) fn open_step<D: Dim>(
 }
 
 /// Second half of a step, with the loads in `acceleration` and `spin_acceleration`. Returns the
-/// sums over all grains when the cell deforms.
+/// sums over all grains. For a cell that deforms; [`crate::motion`] closes steps of others.
 pub(crate) fn close_step<D: Dim>(
     grains: &mut Grains<D>,
     cell: &mut Cell<D>,
@@ -91,12 +89,11 @@ pub(crate) fn close_step<D: Dim>(
     dt: f64,
 ) -> Sums<D> {
     let half = 0.5 * dt;
-    let deforms = cell.deforms();
     let (forth, back) =
         (Matrix::unit().plus(&cell.gradient, -half), Matrix::unit().plus(&cell.gradient, half).inverse());
     let stretch = Matrix::unit().plus(&cell.gradient, half);
     cell.edges = cell.edges.plus(&cell.edge_rate, half);
-    cell.sums.resize(if deforms { blocks.count() } else { 0 }, Sums::default());
+    cell.sums.resize(blocks.count(), Sums::default());
     let low = cell.low;
     let work = (
         &mut grains.position[..],
@@ -112,18 +109,13 @@ pub(crate) fn close_step<D: Dim>(
         let mut sum = Sums::<D>::default();
         for (k, &mass) in mass.iter().enumerate() {
             let acceleration = load[k] * (1.0 / mass) + gravity;
-            if deforms {
-                let u = back.apply(forth.apply(velocity[k]) + acceleration * dt);
-                let (place, mean) = (position[k] - low, (velocity[k] + u) * 0.5);
-                sum.virial = sum.virial.plus(&Matrix::dyad(load[k], place), 1.0);
-                sum.virial = sum.virial.plus(&Matrix::dyad(mean, mean), mass);
-                sum.moment += place * mass;
-                velocity[k] = u;
-                position[k] = low + stretch.apply(place + u * half);
-            } else {
-                velocity[k] += acceleration * dt;
-                position[k] += velocity[k] * half;
-            }
+            let u = back.apply(forth.apply(velocity[k]) + acceleration * dt);
+            let (place, mean) = (position[k] - low, (velocity[k] + u) * 0.5);
+            sum.virial = sum.virial.plus(&Matrix::dyad(load[k], place), 1.0);
+            sum.virial = sum.virial.plus(&Matrix::dyad(mean, mean), mass);
+            sum.moment += place * mass;
+            velocity[k] = u;
+            position[k] = low + stretch.apply(place + u * half);
             load[k] = acceleration;
         }
         for k in 0..spin.len() {
@@ -131,9 +123,7 @@ pub(crate) fn close_step<D: Dim>(
             moment[k] = acceleration;
             spin[k] += acceleration * dt;
         }
-        if let Some(slot) = sums.0.first_mut() {
-            *slot = sum;
-        }
+        sums.0[0] = sum;
     });
     let mut total = Sums::default();
     for sum in &cell.sums {

@@ -4,7 +4,7 @@ use super::images::Moved;
 use super::{Cell, CellControl, Matrix, Shift, motion};
 use crate::dem::{Dem, view_of};
 use crate::kernel::View;
-use crate::material::SetupError;
+use crate::material::{PairProperties, SetupError};
 use granular_core::{Dim, Linear, StepError, Vector};
 
 /// The narrowest cell over the reach of a pair: no grain may see an image of itself, and no image
@@ -17,8 +17,6 @@ const DRIFT: f64 = 0.125;
 const TILT: f64 = 0.55;
 /// Edges by which a grain may be outside at the start.
 const FARTHEST: f64 = 100.0;
-/// Default response of the servo over the time that sound takes through the cell.
-const RESPONSE: f64 = 3.0;
 
 impl<D: Dim> Dem<D> {
     /// Puts the grains into a periodic cell, at rest. Grains outside are put back inside by whole edges.
@@ -30,6 +28,9 @@ impl<D: Dim> Dem<D> {
         if cell.narrowest() < needed {
             let ratio = cell.narrowest() / self.pair_reach();
             return Err(SetupError::new("width of the cell over the reach of a pair", ratio, "at least 1.5"));
+        }
+        if !self.traffic.is_empty() {
+            return Err(SetupError::new("inlets and outlets in a periodic cell", 1.0, "none"));
         }
         let shares = cell.edges.inverse();
         for &position in &self.grains.position {
@@ -53,13 +54,14 @@ impl<D: Dim> Dem<D> {
     }
 
     /// Changes what drives the cell, from the next step on. Where zero, the modulus is that of a packing,
-    /// the normal stiffness over the mean diameter to the power of the dimension less two, and
-    /// the response is three times what sound takes through the cell.
+    /// the normal stiffness times the mean diameter to the power of two less the dimension, and the response
+    /// is the period with which the mean grain swings on one contact. With these, grains in a gas are compressed
+    /// with an inertial number of about half the root of stress over modulus.
     ///
     /// # Errors
     /// When there is no cell, or a control does not fit it.
     pub fn control_cell(&mut self, mut control: CellControl) -> Result<(), SetupError> {
-        let (modulus, response) = (self.packing_modulus(), self.sound_time());
+        let (modulus, response) = (self.packing_modulus(), self.grain_period());
         let Some(cell) = self.cell.as_deref_mut() else {
             return Err(SetupError::new("periodic cells", 0.0, "one: control acts on it"));
         };
@@ -68,7 +70,7 @@ impl<D: Dim> Dem<D> {
             control.modulus = modulus;
         }
         if control.response == 0.0 {
-            control.response = RESPONSE * response;
+            control.response = response;
         }
         cell.control = control;
         cell.take_rates();
@@ -76,18 +78,19 @@ impl<D: Dim> Dem<D> {
         Ok(())
     }
 
-    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\].
-    fn packing_modulus(&self) -> f64 {
-        let stiffest = self.materials.pairs().map(|(.., pair)| pair.normal_stiffness).fold(0.0, f64::max);
-        stiffest / self.mean_diameter().powi(D::N as i32 - 2)
+    /// Stiffness of the hardest pair as a modulus \[Pa; N/m in the plane\]: the normal stiffness times the mean
+    /// diameter to the power of two less the dimension, or the effective modulus of Hertz contacts.
+    pub fn packing_modulus(&self) -> f64 {
+        let scale = self.mean_diameter().powi(D::N as i32 - 2);
+        let modulus = |pair: &PairProperties| (pair.normal_stiffness / scale).max(pair.effective_modulus);
+        self.materials.pairs().map(|(.., pair)| modulus(&pair)).fold(0.0, f64::max)
     }
 
-    /// Time that sound takes through the cell \[s\]: one contact per diameter.
-    fn sound_time(&self) -> f64 {
-        let Some(volume) = self.cell().and_then(Cell::volume) else { return 0.0 };
+    /// Period \[s\] with which the mean grain swings on one contact.
+    fn grain_period(&self) -> f64 {
         let mass = self.grains.mass.iter().sum::<f64>() / self.len().max(1) as f64;
         let stiffness = self.packing_modulus() * self.mean_diameter().powi(D::N as i32 - 2);
-        volume.powf(1.0 / D::N as f64) / self.mean_diameter() * (mass / stiffness).sqrt()
+        std::f64::consts::TAU * (mass / stiffness).sqrt()
     }
 
     fn mean_diameter(&self) -> f64 {
@@ -113,12 +116,17 @@ impl<D: Dim> Dem<D> {
             motion::open_step(&mut self.grains, cell, self.blocks, dt, &mut self.speeds);
             self.load_in_cell(dt, largest)?;
         }
+        self.movers.place(self.clock.time());
         Ok(())
     }
 
     /// One step between its two halves.
     fn load_in_cell(&mut self, dt: f64, largest: f64) -> Result<(), StepError> {
-        let own = crate::motion::fastest(&self.speeds) * dt;
+        let mut own = crate::motion::fastest(&self.speeds) * dt;
+        if !self.movers.is_empty() {
+            own = own.max(self.movers.fastest(dt) * dt);
+            self.movers.place_in_step(self.clock.time(), dt);
+        }
         let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
         let flow = 0.5 * cell.gradient.norm() * (2.0 * largest + self.reach) * dt;
         let stride = own + flow;
@@ -137,9 +145,13 @@ impl<D: Dim> Dem<D> {
         }
         self.push_in_cell(dt, stride);
         self.last_dt = dt;
+        if !self.movers.is_empty() {
+            self.move_walls(dt);
+        }
         let (losses, trouble) = self.pairs.outcome();
         self.close_in_cell(dt);
         self.steps += 1;
+        self.clock.step();
         self.losses += losses;
         trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
     }
@@ -147,7 +159,7 @@ impl<D: Dim> Dem<D> {
     fn push_in_cell(&mut self, dt: f64, margin: f64) {
         let mut force = std::mem::take(&mut self.grains.acceleration);
         let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let seen = view_of(&self.grains, &self.walls, &self.options, self.last_dt);
+        let seen = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
         let started = self.cell.as_deref().map(|cell| cell.start_velocity.as_slice());
         let view = View {
             velocity: &self.grains.middle_velocity,
@@ -164,14 +176,14 @@ impl<D: Dim> Dem<D> {
 
     /// Kick and second half of the drift; the cell books its work and follows its stress.
     fn close_in_cell(&mut self, dt: f64) {
-        let pull = self.pairs.pull();
         let Some(cell) = self.cell.as_deref_mut() else { return };
-        let (gradient, middle) = (cell.gradient, cell.edges);
-        let sums =
-            motion::close_step(&mut self.grains, cell, self.pairs.as_ref(), self.blocks, self.gravity, dt);
+        let (pairs, blocks, gravity) = (self.pairs.as_ref(), self.blocks, self.gravity);
         if !cell.deforms() {
-            return;
+            let speeds = &mut self.speeds;
+            return crate::motion::close_step(&mut self.grains, pairs, blocks, gravity, dt, false, speeds);
         }
+        let (gradient, middle, pull) = (cell.gradient, cell.edges, pairs.pull());
+        let sums = motion::close_step(&mut self.grains, cell, pairs, blocks, gravity, dt);
         let mut virial = sums.virial;
         for axis in (0..D::N).filter(|&axis| cell.periodic[axis]) {
             virial = virial.plus(&Matrix::dyad(pull[axis], middle.columns[axis]), -1.0);

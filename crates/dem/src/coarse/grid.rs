@@ -30,13 +30,13 @@ impl<D: Dim> CoarseGrid<D> {
             return Err(SetupError::new("width of the kernel", width as f64, "1 to 8 cells"));
         }
         let mut counts = [1.0; 3];
-        for axis in 0..D::N {
+        for (axis, count) in counts.iter_mut().enumerate().take(D::N) {
             let extent = (high - low).component(axis);
             if !(extent.is_finite() && extent > 0.0) {
                 return Err(SetupError::new("extent of the grid", extent, "positive and finite"));
             }
             // A corner that is a whole number of cells away up to round-off adds no cell.
-            counts[axis] = (extent / spacing - 1e-9).ceil().max(1.0);
+            *count = (extent / spacing - 1e-9).ceil().max(1.0);
         }
         let total: f64 = counts.iter().product();
         if total > MOST_CELLS {

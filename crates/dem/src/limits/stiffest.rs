@@ -13,11 +13,14 @@ const LEAST_OVERLAP: f64 = 1e-4;
 /// The stiffest meeting that a scene allows between two materials.
 pub(super) struct Stiffest {
     pub(super) oscillator: Oscillator,
+    /// Stiffness along the normal \[N/m\].
+    pub(super) stiffness: f64,
     /// Shortest contact time \[s\].
     pub(super) contact_time: f64,
     /// Shorter Rayleigh time of two spheres in Hertz contact \[s\]; else infinite.
     pub(super) rayleigh_time: f64,
-    /// Overlap of the hardest impact \[m\].
+    /// Speed of the hardest impact \[m/s\], and its overlap \[m\].
+    pub(super) speed: f64,
     pub(super) deepest: f64,
     pub(super) names: String,
     /// What was assumed.
@@ -43,6 +46,7 @@ struct Couple {
     effective_radius: f64,
     /// Of the lighter grain \[kg\].
     mass: f64,
+    on_wall: bool,
 }
 
 impl Oscillator {
@@ -99,14 +103,29 @@ impl<D: Dim> Dem<D> {
                 *place = (self.grains.mass[index], self.grains.radius[index]);
             }
         }
+        for inlet in self.traffic.inlets() {
+            let density = self.materials.get(inlet.material).density;
+            let place = &mut lightest[inlet.material.0 as usize];
+            for &radius in &inlet.radii {
+                let mass = density * D::ball_volume(radius);
+                if mass < place.0 {
+                    *place = (mass, radius);
+                }
+            }
+        }
         let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
-        let (speed, stack) = (self.fastest_impact(), self.extent_along_gravity());
+        let (present_speed, fall) = self.fastest_speeds();
+        let stack = self.extent_along_gravity();
         let present = self.deepest_overlap();
         let mut pairs = Vec::new();
         let mut add = |couple: Couple, names: &str, smaller: f64| {
             pairs.push(match self.options.contact {
-                ContactModel::Linear => self.linear(&couple, speed, names),
-                ContactModel::Hertz => self.hertz(&couple, speed, (stack, present * smaller), names),
+                ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names),
+                ContactModel::Hertz => {
+                    // Two grains may meet head-on.
+                    let closing = if couple.on_wall { present_speed } else { 2.0 * present_speed };
+                    self.hertz(&couple, closing.max(fall), (stack, present * smaller), names)
+                }
             });
         };
         for (a, b, properties) in self.materials.pairs() {
@@ -117,6 +136,7 @@ impl<D: Dim> Dem<D> {
                     effective_mass: m * n / (m + n),
                     effective_radius: r * s / (r + s),
                     mass: m.min(n),
+                    on_wall: false,
                 };
                 add(couple, "grain on grain", r.min(s));
             }
@@ -126,7 +146,13 @@ impl<D: Dim> Dem<D> {
             let (first, second) = (at_wall(b, (m, r)), at_wall(a, (n, s)));
             let (mass, radius) = if first.0 <= second.0 { first } else { second };
             if mass.is_finite() {
-                let couple = Couple { properties, effective_mass: mass, effective_radius: radius, mass };
+                let couple = Couple {
+                    properties,
+                    effective_mass: mass,
+                    effective_radius: radius,
+                    mass,
+                    on_wall: true,
+                };
                 add(couple, "grain on wall", radius);
             }
         }
@@ -137,8 +163,10 @@ impl<D: Dim> Dem<D> {
         let (properties, tension) = (&couple.properties, self.options.tension);
         Stiffest {
             oscillator: Oscillator::linear(properties, couple.effective_mass, tension),
+            stiffness: properties.normal_stiffness,
             contact_time: properties.contact_time(couple.effective_mass, tension),
             rayleigh_time: f64::INFINITY,
+            speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
             names: names.to_owned(),
             meeting: "lightest grains".to_owned(),
@@ -153,7 +181,7 @@ impl<D: Dim> Dem<D> {
         let radius = couple.effective_radius;
         let impact = properties.hertz_impact(radius, couple.effective_mass, speed);
         let deepest = impact.largest_overlap();
-        let grains = 1.0 + reach.0 / self.grains.radius_range().0;
+        let grains = 1.0 + reach.0 / self.smallest_radius();
         let weight = couple.mass * self.gravity.length() * grains;
         let pressed = (0.75 * weight / (properties.effective_modulus * radius.sqrt())).powf(2.0 / 3.0);
         let resting = pressed.max(reach.1).max(LEAST_OVERLAP * radius);
@@ -161,8 +189,10 @@ impl<D: Dim> Dem<D> {
         let overlap = deepest.max(resting);
         Stiffest {
             oscillator: Oscillator::hertz(couple, overlap, tension),
+            stiffness: Oscillator::hertz(couple, overlap, tension).normal * couple.effective_mass,
             contact_time: impact.duration(properties.zeta(tension), tension).min(half_period),
             rayleigh_time: if D::TWISTS { self.rayleigh_time() } else { f64::INFINITY },
+            speed,
             deepest,
             names: names.to_owned(),
             meeting: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
@@ -176,7 +206,13 @@ impl<D: Dim> Dem<D> {
             let elasticity = material.elasticity?;
             Some(elasticity.rayleigh_time(self.grains.radius[index], material.density))
         };
-        (0..self.len()).filter_map(time).fold(f64::INFINITY, f64::min)
+        let of_inlets = self.traffic.inlets().flat_map(|inlet| {
+            let material = self.materials.get(inlet.material);
+            let times =
+                move |&radius: &f64| Some(material.elasticity?.rayleigh_time(radius, material.density));
+            inlet.radii.iter().filter_map(times)
+        });
+        (0..self.len()).filter_map(time).chain(of_inlets).fold(f64::INFINITY, f64::min)
     }
 }
 

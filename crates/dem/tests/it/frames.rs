@@ -30,12 +30,19 @@ fn heap<D: Dim>(case: Case) -> Setup<D> {
     let mut grains = lattice.grains::<D>(&[glass]);
     grains.iter_mut().for_each(|grain| grain.spin = random.spin::<D>(500.0 * speed::<D>()));
     let floor = Wall::plane("floor", D::Vec::ZERO, D::Vec::along(D::UP, 1.0), glass).unwrap();
-    let options = Options { tension: case.tension, ..Options::default() };
+    let options = Options { tension: case.tension, contact: case.contact, ..Options::default() };
     Setup { materials, grains, walls: vec![floor], gravity: down::<D>(200.0), options }
 }
 
 /// Grains by identifier after so many steps of a fixed size, and the time that took.
 fn after<D: Dim>(setup: Setup<D>, steps: u64) -> (Vec<Grain<D>>, f64) {
+    let (grains, time, eventful) = run(setup, steps);
+    assert!(eventful, "too few collisions");
+    (grains, time)
+}
+
+/// The same, and whether enough grains met something: comparisons mean nothing otherwise.
+fn run<D: Dim>(setup: Setup<D>, steps: u64) -> (Vec<Grain<D>>, f64, bool) {
     let (before, gravity) = (setup.grains.clone(), setup.gravity);
     let mut dem = Dem::new(setup).unwrap();
     let dt = if D::N == 2 { 2e-6 } else { 6e-8 * 2.0 };
@@ -43,12 +50,24 @@ fn after<D: Dim>(setup: Setup<D>, steps: u64) -> (Vec<Grain<D>>, f64) {
     let mut grains: Vec<(u32, Grain<D>)> = dem.grains().collect();
     grains.sort_by_key(|(id, _)| *id);
     let time = dt * steps as f64;
-    // Comparisons mean nothing unless grains met something.
     let met = |(old, (_, new)): &(&Grain<D>, &(u32, Grain<D>))| {
         (new.velocity - old.velocity - gravity * time).length() > 0.1 * speed::<D>()
     };
-    assert!(6 * before.iter().zip(&grains).filter(met).count() > before.len(), "too few collisions");
-    (grains.into_iter().map(|(_, grain)| grain).collect(), time)
+    let eventful = 6 * before.iter().zip(&grains).filter(met).count() > before.len();
+    (grains.into_iter().map(|(_, grain)| grain).collect(), time, eventful)
+}
+
+/// Grains that fly freely, to begin with.
+fn free<D: Dim>(case: Case) -> Setup<D> {
+    Setup { walls: vec![], gravity: D::Vec::ZERO, ..heap::<D>(case) }
+}
+
+/// Draws in which grains meet, with and without the floor.
+fn eventful_case() -> impl Strategy<Value = Case> {
+    fn eventful<D: Dim>(case: Case) -> bool {
+        run(heap::<D>(case), STEPS).2 && run(free::<D>(case), STEPS).2
+    }
+    any_case().prop_filter("too few collisions", |case| eventful::<D2>(*case) && eventful::<D3>(*case))
 }
 
 /// Largest difference of velocities \[m/s\] and of surface speeds by spin \[m/s\].
@@ -87,9 +106,8 @@ fn moved<D: Dim>(
 }
 
 fn boosted<D: Dim>(case: Case, velocity: D::Vec) -> f64 {
-    let free = || Setup { walls: vec![], gravity: D::Vec::ZERO, ..heap::<D>(case) };
-    let (mut expected, _) = after(free(), STEPS);
-    let mut setup = free();
+    let (mut expected, _) = after(free::<D>(case), STEPS);
+    let mut setup = free::<D>(case);
     setup.grains.iter_mut().for_each(|grain| grain.velocity += velocity);
     let (found, _) = after(setup, STEPS);
     expected.iter_mut().for_each(|grain| grain.velocity += velocity);
@@ -115,28 +133,50 @@ fn reordered<D: Dim>(case: Case) -> f64 {
     difference(&expected, &sorted)
 }
 
-/// Round-off of positions near 1 m against overlaps of some micrometres, over some collisions.
+/// Round-off against overlaps of some micrometres, over some collisions.
 const ROUND_OFF: f64 = 1e-7;
+/// Times what round-off of the first positions does that round-off in all steps may do. Over 800
+/// draws the median was 0.9 and the largest 14; a law that depends on the place knows no such bound.
+const MUCH: f64 = 30.0;
+
+/// How far grains go astray when they start from other places by round-off at `by`, the largest
+/// of three draws. Collisions amplify it, in some draws thirty times more than in most.
+fn astray<D: Dim>(case: Case, by: D::Vec) -> f64 {
+    let (expected, _) = after(heap::<D>(case), STEPS);
+    let size = (0..D::N).map(|axis| by.component(axis).abs()).fold(0.0, f64::max);
+    let mut random = Random::new(case.seed ^ 1);
+    let astray = [(); 3].map(|()| {
+        let mut setup = heap::<D>(case);
+        // Rounded anew in each step: 16 stands for the root of their number.
+        setup.grains.iter_mut().for_each(|grain| {
+            grain.position += random.vector::<D>(16.0 * f64::EPSILON * size);
+        });
+        difference(&expected, &after(setup, STEPS).0)
+    });
+    astray.into_iter().fold(0.0, f64::max)
+}
 
 proptest! {
     #![proptest_config(cases(16))]
 
     #[test]
-    fn a_galilean_boost_changes_nothing(case in any_case(), x in -5.0..5.0, y in -5.0..5.0, z in -5.0..5.0) {
+    fn a_galilean_boost_changes_nothing(case in eventful_case(), x in -5.0..5.0, y in -5.0..5.0, z in -5.0..5.0) {
         prop_assert!(boosted::<D2>(case, DVec2::new(x, y)) < ROUND_OFF);
         prop_assert!(boosted::<D3>(case, DVec3::new(x, y, z)) < ROUND_OFF);
     }
 
     #[test]
-    fn a_translation_changes_nothing(case in any_case(), x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) {
+    fn a_translation_changes_nothing(case in eventful_case(), x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) {
         let by = DVec2::new(x, y);
-        prop_assert!(moved::<D2>(case, |p| p + by, |v| v, |w| w) < ROUND_OFF);
+        let (error, astray_2) = (moved::<D2>(case, |p| p + by, |v| v, |w| w), astray::<D2>(case, by));
+        prop_assert!(error < MUCH * astray_2, "{error:e}, {astray_2:e}");
         let by = DVec3::new(x, y, z);
-        prop_assert!(moved::<D3>(case, |p| p + by, |v| v, |w| w) < ROUND_OFF);
+        let (error, astray_3) = (moved::<D3>(case, |p| p + by, |v| v, |w| w), astray::<D3>(case, by));
+        prop_assert!(error < MUCH * astray_3, "{error:e}, {astray_3:e}");
     }
 
     #[test]
-    fn a_rotation_changes_nothing(case in any_case(), angle in 0.0..6.3, tilt in 0.0..3.1) {
+    fn a_rotation_changes_nothing(case in eventful_case(), angle in 0.0..6.3, tilt in 0.0..3.1) {
         let by = DVec2::from_angle(angle);
         let error = moved::<D2>(case, |p| by.rotate(p), |v| by.rotate(v), |w| w);
         prop_assert!(error < ROUND_OFF, "{error:e}");
@@ -146,7 +186,7 @@ proptest! {
     }
 
     #[test]
-    fn a_mirror_shows_the_same_bits(case in any_case()) {
+    fn a_mirror_shows_the_same_bits(case in eventful_case()) {
         let flip = |v: DVec2| DVec2::new(-v.x, v.y);
         prop_assert_eq!(moved::<D2>(case, flip, flip, |w| -w), 0.0);
         let flip = |v: DVec3| DVec3::new(-v.x, v.y, v.z);
@@ -155,19 +195,19 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_grains_does_not_matter(case in any_case()) {
+    fn the_order_of_grains_does_not_matter(case in eventful_case()) {
         let (disks, spheres) = (reordered::<D2>(case), reordered::<D3>(case));
         prop_assert!(disks < ROUND_OFF && spheres < ROUND_OFF, "{disks:e} {spheres:e}");
     }
 
     #[test]
-    fn disks_are_a_slice_of_spheres(case in any_case()) {
+    fn disks_are_a_slice_of_spheres(case in eventful_case()) {
         let error = slice(Case { friction: 0.0, rolling: 0.0, ..case });
         prop_assert!(error < 1e-12, "{error:e}");
     }
 
     #[test]
-    fn spheres_in_a_plane_stay_there(case in any_case()) {
+    fn spheres_in_a_plane_stay_there(case in eventful_case()) {
         let mut setup = heap::<D3>(case);
         for grain in &mut setup.grains {
             grain.position.y = 0.0;
@@ -198,7 +238,7 @@ fn slice(case: Case) -> f64 {
         (materials, list)
     };
     let lattice = Lattice { side: 4, jitter: 30e-6, seed: case.seed, ..Lattice::default() };
-    let options = Options { tension: case.tension, ..Options::default() };
+    let options = Options { tension: case.tension, contact: case.contact, ..Options::default() };
     let (materials, list) = make(false);
     let mut grains = lattice.grains::<D2>(&list);
     grains.iter_mut().enumerate().for_each(|(k, grain)| grain.radius = radii[k % 3]);

@@ -15,10 +15,13 @@ mod impact;
 mod incline;
 mod lists;
 mod memory;
+mod moving_walls;
 mod oblique;
 mod restart;
 mod sample;
 mod stability;
+mod surfaces;
+mod traffic;
 mod twisting;
 
 #[global_allocator]

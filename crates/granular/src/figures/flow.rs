@@ -103,16 +103,19 @@ fn add_walls(scene: &Scene, panels: &mut [GrainPanel]) {
         grains.chain(chains).collect::<Vec<_>>()
     });
     let [right, top] = ends.fold([0.0_f64; 2], |[x, y], [a, b]| [x.max(a), y.max(b)]);
+    let point = |at: &[granular_core::units::Length]| {
+        in_plane(scene, std::array::from_fn(|axis| at.get(axis).map_or(0.0, |x| x.value())))
+    };
     let mut lines = Vec::new();
     for wall in &scene.walls {
         match wall {
             WallSpec::Floor { .. } => lines.push([[0.0, 0.0], [1.02 * right, 0.0]]),
             WallSpec::Left { .. } => lines.push([[0.0, 0.0], [0.0, 1.05 * top]]),
-            WallSpec::Segment { from, to, .. } => {
-                let point = |p: &[granular_core::units::Length]| {
-                    in_plane(scene, std::array::from_fn(|axis| p.get(axis).map_or(0.0, |x| x.value())))
-                };
-                lines.push([point(from), point(to)]);
+            WallSpec::Segment { from, to, opens: None, .. } => lines.push([point(from), point(to)]),
+            WallSpec::Chain { points, closed, .. } => {
+                let closing = points.last().zip(points.first()).filter(|_| *closed);
+                let pairs = points.windows(2).map(|pair| (&pair[0], &pair[1])).chain(closing);
+                lines.extend(pairs.map(|(from, to)| [point(from), point(to)]));
             }
             _ => {}
         }

@@ -2,6 +2,7 @@
 
 mod stiffness;
 
+use super::boundaries::{self, Surroundings};
 use super::walls::{self, Beside};
 use super::{Action, Model, Problems, nearest, outputs, sample};
 use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
@@ -9,7 +10,7 @@ use crate::scene_file::SceneProblem;
 use granular_core::units::Acceleration;
 use granular_core::{D2, D3, Dim, Simulation, Vector};
 use granular_dem::spec::DemSpec;
-use granular_dem::{Dem, MaterialId, Materials, Setup};
+use granular_dem::{Dem, MaterialId, Materials, Setup, Wall};
 use std::any::Any;
 use std::collections::BTreeMap;
 
@@ -75,6 +76,10 @@ pub(super) fn build<D: Dim>(
     let mut materials = NamedMaterials::of(scene, spec, D::N == 2, &mut problems);
     let sample = match &scene.sample {
         Some(sample) => sample::grains::<D>(sample, &materials, &mut problems),
+        // Grains may all come in through inlets.
+        None if !scene.inlets.is_empty() => {
+            Some(sample::BuiltSample { grains: Vec::new(), column: None, cell: None })
+        }
         None => {
             problems.add("sample", "missing", "the grains, such as a Column", "");
             None
@@ -89,9 +94,16 @@ pub(super) fn build<D: Dim>(
         (None, Some(Sample::Column { .. }) | None) => Beside::Unknown,
         _ => column.map_or(Beside::Nothing, Beside::Column),
     };
-    let walls = walls::walls::<D>(&scene.walls, beside, &materials, &mut problems);
+    let mass = |grain: &granular_dem::Grain<D>| {
+        materials.list.get(grain.material).density * D::ball_volume(grain.radius)
+    };
+    let grains_mass = sample.iter().flat_map(|sample| &sample.grains).map(mass).sum();
+    let around = Surroundings { scene, materials: &materials, grains_mass };
+    let walls = walls::walls::<D>(&scene.walls, beside, &around, &mut problems);
+    let of_inlets = inlet_materials(scene, &materials, &mut problems);
+    let cell = super::cell::cell::<D>(scene, sample.as_ref(), &mut problems);
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
-    check_wall_names(scene, walls.list.iter().map(|wall| wall.name.as_str()).collect(), &mut problems);
+    check_wall_names(scene, &walls.list, &mut problems);
     check_spec(name, spec, &mut problems);
     let (Some(gravity), Some(sample), true) = (gravity, sample, problems.0.is_empty()) else {
         return Err(problems.0);
@@ -103,9 +115,14 @@ pub(super) fn build<D: Dim>(
         gravity,
         options: spec.options(needs_ledger(scene)),
     };
-    let dem = Dem::<D>::new(setup).map_err(|error| {
+    let mut dem = Dem::<D>::new(setup).map_err(|error| {
         vec![SceneProblem::at_path(format!("solvers.{name}"), error.to_string(), error.allowed, "")]
     })?;
+    boundaries::traffic(scene, &mut dem, &of_inlets, &mut problems);
+    if let Some(cell) = cell {
+        dem.set_cell(cell)
+            .map_err(|error| vec![SceneProblem::at_path("cell", error.to_string(), error.allowed, "")])?;
+    }
     outputs::check_names(scene, &dem, &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
@@ -119,7 +136,24 @@ pub(super) fn build<D: Dim>(
     })
 }
 
-fn check_wall_names(scene: &Scene, names: Vec<&str>, problems: &mut Problems) {
+/// Materials of inlets by name, or what is wrong with them.
+fn inlet_materials(
+    scene: &Scene,
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Vec<(String, MaterialId)> {
+    let mut found = Vec::new();
+    for (k, inlet) in scene.inlets.iter().enumerate() {
+        let id = materials.find(&format!("inlets.{k}.material"), &inlet.material, problems);
+        found.extend(id.map(|id| (inlet.material.clone(), id)));
+    }
+    found
+}
+
+fn check_wall_names<D: Dim>(scene: &Scene, walls: &[Wall<D>], problems: &mut Problems) {
+    let names: Vec<&str> = walls.iter().map(|wall| wall.name.as_str()).collect();
+    let moving = walls.iter().filter(|wall| wall.motion.is_some()).map(|wall| wall.name.as_str());
+    let started: Vec<&str> = moving.chain(scene.inlets.iter().map(|inlet| inlet.name.as_str())).collect();
     for (k, name) in names.iter().enumerate() {
         if names[..k].contains(name) {
             problems.add("walls", format!("two walls called `{name}`"), "walls with names of their own", "");
@@ -127,7 +161,11 @@ fn check_wall_names(scene: &Scene, names: Vec<&str>, problems: &mut Problems) {
     }
     for (k, stage) in scene.stages.iter().enumerate() {
         for (c, change) in stage.changes.iter().enumerate() {
-            let (Change::Open(name) | Change::Close(name)) = change else { continue };
+            let (name, names) = match change {
+                Change::Open(name) | Change::Close(name) => (name, &names),
+                Change::Start(name) | Change::Halt(name) => (name, &started),
+                _ => continue,
+            };
             if !names.contains(&name.as_str()) {
                 let path = format!("stages.{k}.changes.{c}");
                 problems.add(
@@ -156,7 +194,12 @@ fn check_spec(name: &str, spec: &DemSpec, problems: &mut Problems) {
 
 /// Whether anything asks for losses of energy.
 fn needs_ledger(scene: &Scene) -> bool {
-    let asks = |probes: &[String]| probes.iter().any(|p| p.starts_with("loss_") || p == "energy_residual");
+    let asks = |probes: &[String]| {
+        probes.iter().any(|probe| {
+            let sums = ["energy_residual", "wall_work", "energy_exchanged", "cell_work"];
+            probe.starts_with("loss_") || sums.contains(&probe.as_str())
+        })
+    };
     let in_tables = scene.outputs.iter().any(|output| match &output.write {
         Writer::Table { probes, .. } => asks(probes),
         _ => false,
@@ -189,7 +232,13 @@ fn actions<D: Dim>(
         let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
         for (c, change) in stage.changes.iter().enumerate() {
             let path = format!("stages.{k}.changes.{c}");
-            list.extend(action::<D>(&path, change, materials, problems));
+            list.extend(match change {
+                Change::Cell(change) => {
+                    let control = super::cell::control::<D>(&path, change, scene.cell.as_ref(), problems);
+                    control.map(Action::Cell)
+                }
+                change => action::<D>(&path, change, materials, problems),
+            });
         }
         stages.push(list);
     }
@@ -216,6 +265,9 @@ fn action<D: Dim>(
         Change::StopMotion => Action::StopMotion,
         Change::Open(name) => Action::Wall(name.clone(), true),
         Change::Close(name) => Action::Wall(name.clone(), false),
+        Change::Start(name) => Action::Moving(name.clone(), true),
+        Change::Halt(name) => Action::Moving(name.clone(), false),
+        Change::Cell(_) => return None,
     })
 }
 
@@ -236,5 +288,10 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
         }
         Action::StopMotion => dem.stop_motion(),
         Action::Wall(name, open) => _ = dem.set_open(name, *open),
+        Action::Moving(name, runs) => {
+            dem.set_moving(name, *runs);
+            dem.set_inlet(name, *runs);
+        }
+        Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
     }
 }

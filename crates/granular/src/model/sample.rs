@@ -20,6 +20,8 @@ const MOST_GRAINS: f64 = 1e8;
 pub(crate) struct BuiltSample<D: Dim> {
     pub(crate) grains: Vec<Grain<D>>,
     pub(crate) column: Option<ColumnSize>,
+    /// Size of the cell that the sample fills \[m\].
+    pub(crate) cell: Option<D::Vec>,
 }
 
 pub(crate) fn grains<D: Dim>(
@@ -33,6 +35,7 @@ pub(crate) fn grains<D: Dim>(
             let column = Column::of::<D>(sample, problems)?;
             column.build(material?, problems)
         }
+        Sample::Cell { .. } => super::cell::fill(sample, materials, problems),
         Sample::Grains(list) => {
             if list.is_empty() {
                 problems.add("sample", "empty", "at least one grain", "");
@@ -40,7 +43,7 @@ pub(crate) fn grains<D: Dim>(
             let grains: Vec<Option<Grain<D>>> =
                 list.iter().enumerate().map(|(k, spec)| grain(k, spec, materials, problems)).collect();
             let grains = grains.into_iter().collect::<Option<Vec<_>>>()?;
-            Some(BuiltSample { grains, column: None })
+            Some(BuiltSample { grains, column: None, cell: None })
         }
     }
 }
@@ -149,7 +152,7 @@ impl<'a> Column<'a> {
             Ok((radii, positions, column)) => {
                 let pairs = positions.into_iter().zip(radii);
                 let grains = pairs.map(|(position, radius)| Grain::at(position, radius, material)).collect();
-                Some(BuiltSample { grains, column: Some(column) })
+                Some(BuiltSample { grains, column: Some(column), cell: None })
             }
             Err(Refusal { path, value, allowed }) => {
                 problems.add(path, value, allowed, "");
@@ -265,7 +268,7 @@ impl From<PackingError> for Refusal {
     }
 }
 
-fn grading_of(spec: &GradingSpec) -> Grading {
+pub(crate) fn grading_of(spec: &GradingSpec) -> Grading {
     match *spec {
         GradingSpec::Single(diameter) => Grading::Single { diameter: diameter.value() },
         GradingSpec::Beta { min, max, a, b } => Grading::Beta { min: min.value(), max: max.value(), a, b },

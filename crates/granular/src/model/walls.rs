@@ -1,7 +1,9 @@
 //! Walls of a scene.
 
-use super::{ColumnSize, NamedMaterials, Problems};
+use super::boundaries::{self, Surroundings};
+use super::{ColumnSize, Problems};
 use crate::scene::WallSpec;
+use crate::scene::boundaries::MotionSpec;
 use granular_core::units::Length;
 use granular_core::{Dim, Vector};
 use granular_dem::{MaterialId, SetupError, Wall};
@@ -26,13 +28,14 @@ pub(crate) struct BuiltWalls<D: Dim> {
 pub(crate) fn walls<D: Dim>(
     specs: &[WallSpec],
     beside: Beside,
-    materials: &NamedMaterials,
+    around: &Surroundings<'_>,
     problems: &mut Problems,
 ) -> BuiltWalls<D> {
     let mut built = BuiltWalls { list: Vec::new(), openings: Vec::new() };
     for (k, spec) in specs.iter().enumerate() {
         let path = format!("walls.{k}");
-        let Some(material) = materials.find(&format!("{path}.material"), spec.material(), problems) else {
+        let Some(material) = around.materials.find(&format!("{path}.material"), spec.material(), problems)
+        else {
             continue;
         };
         let column = match beside {
@@ -47,7 +50,12 @@ pub(crate) fn walls<D: Dim>(
         };
         let before = built.list.len();
         match shapes::<D>(&path, spec, column, material, problems) {
-            Ok(list) => built.list.extend(list),
+            Ok(mut list) => {
+                for wall in &mut list {
+                    boundaries::set_moving(&path, wall, spec.moves(), around, problems);
+                }
+                built.list.extend(list);
+            }
             Err(error) => {
                 let value = format!("a wall that cannot be: {} is {}", error.what, error.value);
                 problems.add(path.clone(), value, error.allowed, "");
@@ -101,11 +109,72 @@ fn shapes<D: Dim>(
             (Some(low), Some(high)) => vec![Wall::block(name, low, high, material)?],
             _ => vec![],
         },
+        WallSpec::Chain { name, points, closed, .. } => {
+            let points: Option<Vec<D::Vec>> =
+                points.iter().enumerate().map(|(k, at)| point(&format!("points.{k}"), at)).collect();
+            points
+                .map(|points| Wall::chain(name, &points, *closed, material))
+                .transpose()?
+                .into_iter()
+                .collect()
+        }
+        WallSpec::Mesh { .. } => mesh::<D>(path, spec, material, problems)?,
+        WallSpec::HeldGrains { name, low, high, diameter, spacing, scatter, seed, .. } => {
+            match (point("low", low), point("high", high)) {
+                (Some(low), Some(high)) => {
+                    let sizes = (diameter.value(), spacing.value(), scatter.value());
+                    let held = boundaries::held_grains::<D>(path, (low, high), sizes, *seed, problems);
+                    held.map(|held| Wall::held_grains(name, &held, material))
+                        .transpose()?
+                        .into_iter()
+                        .collect()
+                }
+                _ => vec![],
+            }
+        }
         WallSpec::Box { name, low, high, .. } => match (point("low", low), point("high", high)) {
             (Some(low), Some(high)) => closed_box::<D>(name, low, high, material)?,
             _ => vec![],
         },
     })
+}
+
+/// The triangles of a file, where the scene puts them.
+fn mesh<D: Dim>(
+    path: &str,
+    spec: &WallSpec,
+    material: MaterialId,
+    problems: &mut Problems,
+) -> Result<Vec<Wall<D>>, SetupError> {
+    let WallSpec::Mesh { name, file, unit, at, .. } = spec else { return Ok(vec![]) };
+    let triangles = match granular_io::read_stl(std::path::Path::new(file)) {
+        Ok(triangles) => triangles,
+        Err(error) => {
+            let hint = "the path is taken from where the command is run";
+            problems.add(
+                format!("{path}.file"),
+                format!("`{file}`: {error}"),
+                "an STL file that can be read",
+                hint,
+            );
+            return Ok(vec![]);
+        }
+    };
+    let at = if at.is_empty() {
+        Some(D::Vec::default())
+    } else {
+        problems.vector::<D, _>(&format!("{path}.at"), at)
+    };
+    let Some(at) = at else { return Ok(vec![]) };
+    let corner = |corner: &[f64; 3]| D::Vec::from_slice(corner).map(|corner| at + corner * unit.value());
+    let corners: Option<Vec<D::Vec>> = triangles.as_flattened().iter().map(corner).collect();
+    match corners {
+        Some(corners) => Ok(vec![Wall::triangles(name, corners, material)?]),
+        None => {
+            problems.add(path, "Mesh", "a scene in space", "in the plane a Chain does the same");
+            Ok(vec![])
+        }
+    }
 }
 
 fn closed_box<D: Dim>(
@@ -136,7 +205,22 @@ impl WallSpec {
             | Self::Plane { material, .. }
             | Self::Segment { material, .. }
             | Self::Block { material, .. }
+            | Self::Chain { material, .. }
+            | Self::Mesh { material, .. }
+            | Self::HeldGrains { material, .. }
             | Self::Box { material, .. } => material,
+        }
+    }
+
+    fn moves(&self) -> Option<&MotionSpec> {
+        match self {
+            Self::Plane { moves, .. }
+            | Self::Segment { moves, .. }
+            | Self::Block { moves, .. }
+            | Self::Chain { moves, .. }
+            | Self::Mesh { moves, .. }
+            | Self::HeldGrains { moves, .. } => moves.as_ref(),
+            _ => None,
         }
     }
 
@@ -148,9 +232,12 @@ impl WallSpec {
     fn opens(&self) -> Option<&str> {
         match self {
             Self::Gate { opens, .. } => Some(opens),
-            Self::Plane { opens, .. } | Self::Segment { opens, .. } | Self::Block { opens, .. } => {
-                opens.as_deref()
-            }
+            Self::Plane { opens, .. }
+            | Self::Segment { opens, .. }
+            | Self::Block { opens, .. }
+            | Self::Chain { opens, .. }
+            | Self::Mesh { opens, .. }
+            | Self::HeldGrains { opens, .. } => opens.as_deref(),
             _ => None,
         }
     }

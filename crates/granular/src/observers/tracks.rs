@@ -1,10 +1,11 @@
 //! Tracks of single grains, as rows of a table.
 
+use super::series::Series;
 use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
 use crate::scene::Chosen;
 use granular_core::{FieldRef, Location};
+use granular_io::Frame;
 use granular_io::frame::Values;
-use granular_io::{Frame, TableWriter};
 use std::path::PathBuf;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -12,13 +13,10 @@ const ENTRIES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
 /// One row per chosen grain and look.
 pub(super) struct TracksObserver {
-    path: PathBuf,
+    series: Series,
     chosen: Chosen,
     fields: Vec<String>,
     axes: usize,
-    columns: Vec<(String, String)>,
-    writer: Option<TableWriter>,
-    last_step: Option<u64>,
 }
 
 impl TracksObserver {
@@ -34,52 +32,15 @@ impl TracksObserver {
             Location::Points(_) => 3,
             Location::Grid { .. } => return Err(Failure::io(path.display(), "tracks are of grains")),
         };
-        let (chosen, fields) = (chosen.clone(), fields.to_vec());
-        let mut observer =
-            Self { path, chosen, fields, axes, columns: Vec::new(), writer: None, last_step: None };
-        observer.columns = observer.head(&observer.frame(simulation));
-        if fresh {
-            observer.writer = Some(TableWriter::create(&observer.path, &observer.names())?);
-        }
-        Ok(observer)
-    }
-
-    fn frame(&self, simulation: &Simulation) -> Frame {
-        let mut frame = Frame::wanting(self.fields.iter().map(String::as_str).chain(["id"]));
-        simulation.solver().show(&mut frame);
-        frame
-    }
-
-    /// Columns of one field: one per axis of a vector, one per entry of a tensor.
-    fn parts(&self, values: &Values) -> &'static [&'static str] {
-        match values {
-            Values::Vector(_) => &AXES[..self.axes],
-            Values::Tensor(_) if self.axes == 2 => &["xx", "yy", "xy"],
-            Values::Tensor(_) => &ENTRIES,
-            _ => &[],
-        }
-    }
-
-    fn head(&self, frame: &Frame) -> Vec<(String, String)> {
-        let own = [("time", "s"), ("id", "1"), ("x", "m"), ("y", "m"), ("z", "m")];
-        let own = own.iter().take(2 + self.axes).map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()));
-        let fields = self.fields.iter().filter_map(|name| frame.get(name)).flat_map(|field| {
-            let parts = self.parts(&field.values);
-            let single = parts.is_empty().then(|| field.name.clone());
-            let names = parts.iter().map(|part| format!("{}_{part}", field.name)).chain(single);
-            names.map(|name| (name, field.unit.clone())).collect::<Vec<_>>()
-        });
-        own.chain(fields).collect()
-    }
-
-    fn names(&self) -> Vec<(&str, &str)> {
-        self.columns.iter().map(|(name, unit)| (name.as_str(), unit.as_str())).collect()
+        let columns = head(&frame(fields, simulation), fields, axes);
+        let series = Series::new(path, columns, fresh)?;
+        Ok(Self { series, chosen: chosen.clone(), fields: fields.to_vec(), axes })
     }
 
     fn row(&self, frame: &Frame, index: usize) -> Vec<f64> {
         let mut row = Vec::new();
         for field in self.fields.iter().filter_map(|name| frame.get(name)) {
-            let parts = self.parts(&field.values);
+            let parts = parts(&field.values, self.axes);
             match &field.values {
                 Values::Scalar(values) => row.push(values[index]),
                 Values::Single(values) => row.push(f64::from(values[index])),
@@ -95,54 +56,70 @@ impl TracksObserver {
     }
 }
 
+fn frame(fields: &[String], simulation: &Simulation) -> Frame {
+    let mut frame = Frame::wanting(fields.iter().map(String::as_str).chain(["id"]));
+    simulation.solver().show(&mut frame);
+    frame
+}
+
+/// Columns of one field: one per axis of a vector, one per entry of a tensor.
+fn parts(values: &Values, axes: usize) -> &'static [&'static str] {
+    match values {
+        Values::Vector(_) => &AXES[..axes],
+        Values::Tensor(_) if axes == 2 => &["xx", "yy", "xy"],
+        Values::Tensor(_) => &ENTRIES,
+        _ => &[],
+    }
+}
+
+/// Names and units of all columns.
+fn head(frame: &Frame, fields: &[String], axes: usize) -> Vec<(String, String)> {
+    let own = [("time", "s"), ("id", "1"), ("x", "m"), ("y", "m"), ("z", "m")];
+    let own = own.iter().take(2 + axes).map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()));
+    let fields = fields.iter().filter_map(|name| frame.get(name)).flat_map(|field| {
+        let parts = parts(&field.values, axes);
+        let single = parts.is_empty().then(|| field.name.clone());
+        let names = parts.iter().map(|part| format!("{}_{part}", field.name)).chain(single);
+        names.map(|name| (name, field.unit.clone())).collect::<Vec<_>>()
+    });
+    own.chain(fields).collect()
+}
+
 impl Observer for TracksObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let frame = self.frame(simulation);
+        let frame = frame(&self.fields, simulation);
         let time = simulation.clock().time();
-        self.last_step = Some(simulation.clock().step());
+        self.series.looked_at(simulation);
         let Some(Values::Index(ids)) = frame.get("id").map(|field| &field.values) else {
             return Ok(Flow::Continue);
         };
         let Location::Points(points) = simulation.solver().location() else { return Ok(Flow::Continue) };
         let Values::Vector(points) = Values::from(points) else { return Ok(Flow::Continue) };
-        let mut found: Vec<(u32, usize)> = ids
-            .iter()
-            .zip(0..)
-            .map(|(&id, index)| (id, index))
-            .filter(|(id, _)| self.chosen.holds(*id))
-            .collect();
+        let found = ids.iter().zip(0..).map(|(&id, index)| (id, index));
+        let mut found: Vec<(u32, usize)> = found.filter(|(id, _)| self.chosen.holds(*id)).collect();
         // Grains are sorted in memory now and then; rows are by their stable identifiers.
         found.sort_unstable();
         for (id, index) in found {
             let mut row = vec![time, f64::from(id)];
             row.extend_from_slice(&points[index][..self.axes]);
             row.extend(self.row(&frame, index));
-            if let Some(writer) = &mut self.writer {
-                writer.row(&row)?;
-            }
+            self.series.row(&row)?;
         }
         Ok(Flow::Continue)
     }
 
     fn finish(&mut self, simulation: &Simulation) -> Result<(), ObserverError> {
-        if self.last_step != Some(simulation.clock().step()) {
+        if self.series.lacks(simulation) {
             self.observe(simulation)?;
         }
-        if let Some(writer) = &mut self.writer {
-            writer.sync()?;
-        }
-        Ok(())
+        self.series.sync()
     }
 
     fn save(&self, to: &mut Section) {
-        to.put_one("bytes", self.writer.as_ref().map_or(0, TableWriter::position));
-        to.put_one("last step", self.last_step.unwrap_or(u64::MAX));
+        self.series.save(to);
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let bytes: u64 = from.one("bytes")?;
-        self.last_step = Some(from.one("last step")?).filter(|&step| step != u64::MAX);
-        self.writer = Some(TableWriter::reopen_at(&self.path, &self.names(), bytes)?);
-        Ok(())
+        self.series.restore(from)
     }
 }

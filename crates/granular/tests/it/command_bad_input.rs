@@ -40,6 +40,37 @@ const SCENE_CASES: &[Case<'_>] = &[
     ("aspect_ratio: 0.8", "aspect_ratio: NaN", 2, &["`NaN` is not a finite number"]),
     ("\"0.1 s\"", "\"nan s\"", 2, &["`nan s` is not finite", "a time such as"]),
     ("friction: 0.5)", "friction: -0.5)", 2, &["`materials.glass.friction` is -0.5", "zero or more"]),
+    // What makes a contact stiff.
+    (
+        "normal_stiffness: \"1e5 N/m\", ",
+        "",
+        2,
+        &["`materials.glass.normal_stiffness` is missing", "young_modulus and poisson_ratio", "small.ron:"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\", typical_load: \"10 N/m\"",
+        2,
+        &["`materials.glass.poisson_ratio` is missing", "beside young_modulus"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\", poisson_ratio: 0.7",
+        2,
+        &["`materials.glass.typical_load` is missing", "a load per metre of depth"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "young_modulus: \"1 GPa\", poisson_ratio: 0.7, typical_load: \"10 N/m\"",
+        2,
+        &["`materials.glass.poisson_ratio` is 0.7", "above -1 and at most 0.5"],
+    ),
+    (
+        "normal_stiffness: \"1e5 N/m\"",
+        "normal_stiffness: \"1e5 N/m\", typical_load: \"10 N/m\"",
+        2,
+        &["`materials.glass.typical_load` is 10 N/m", "nothing, since normal_stiffness is given"],
+    ),
     ("gravity: [0.0, -9.81]", "gravity: [0.0]", 2, &["`gravity` is a list of 1", "2 values, one per axis"]),
     ("Grains(120)", "Grains(0)", 2, &["`sample.extent` is a column of 0 grains", "at least one grain"]),
     (
@@ -159,6 +190,22 @@ fn a_bad_scene_is_refused_with_its_place_and_leaves_nothing() {
             assert!(elsewhere || message.contains(&place), "{place} is not in:\n{message}");
         }
     }
+}
+
+#[test]
+fn hertz_contacts_ask_every_material_for_its_elastic_constants() {
+    let scratch = Scratch::new("hertz");
+    let parts = [
+        "`materials.glass.young_modulus` is missing",
+        "`materials.wall.young_modulus` is missing",
+        "young_modulus and poisson_ratio, since contacts are Hertz",
+    ];
+    fails(&scratch, SMALL.as_bytes(), &["--set", "solvers.grains.contact=Hertz"], 2, &parts);
+    // With them the same scene runs, its linear stiffness unused.
+    let text = SMALL
+        .replace("restitution: 0.75", "young_modulus: \"20 GPa\", poisson_ratio: 0.25, restitution: 0.75");
+    fs::write(scratch.path("small.ron"), text).unwrap();
+    scratch.granular(&["check", "small.ron", "--set", "solvers.grains.contact=Hertz"]).expect(0);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 mod command;
 mod command_bad_input;
+mod command_boundaries;
 mod command_coarse;
 mod command_disk;
 mod command_flow;

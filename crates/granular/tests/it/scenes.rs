@@ -9,6 +9,17 @@ use std::path::Path;
 /// Scenes with what makes them short. An example without a line here fails the test.
 const SHORTENED: &[(&str, &[&str])] = &[
     ("ch3_disk_on_incline", &["stages.0.end=For(\"0.05 s\")"]),
+    ("ch3_hertz_impact", &["solvers.spheres.steps_per_contact=50"]),
+    (
+        "ch3_hopper",
+        &[
+            "stages.0.end=For(\"0.03 s\")",
+            "stages.1.end=For(\"0.03 s\")",
+            "stages.2.end=For(\"0.03 s\")",
+            "figures.1.times=[0]",
+        ],
+    ),
+    ("ch4_shear", &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.02 s\")"]),
     ("ch5_cavity", &["solvers.fluid.spacing=50 mm", "stages.0.end=For(\"12 s\")"]),
     ("ch5_cylinder_steady", &["solvers.fluid.spacing=10 mm", "stages.0.end=For(\"1 s\")"]),
     (

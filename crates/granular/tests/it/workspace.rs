@@ -14,6 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("granular-packing", &["granular-core"]),
     ("granular-dem", &["granular-core"]),
     ("granular-lbm", &["granular-core"]),
+    ("granular-tessellate", &["granular-core"]),
     ("granular-coupling", &["granular-core"]),
     ("granular-io", &["granular-core"]),
     ("granular-validation-data", &[]),

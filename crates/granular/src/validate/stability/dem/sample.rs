@@ -59,7 +59,8 @@ impl Squeezed {
             }
             Shape::Row(ratio) => {
                 let (small, large) = (RADIUS, ratio * RADIUS);
-                let middle = 1.1 * large;
+                // Side walls hold the large grain: a free row under pressure buckles with any step.
+                let middle = large;
                 let at = |y: f64, radius: f64| (DVec2::new(middle, y), radius);
                 let list = vec![
                     at(small, small),

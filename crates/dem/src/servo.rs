@@ -1,0 +1,108 @@
+//! Walls under a force: a body with a mass and a dashpot, which moves along one direction only.
+//!
+//! ```text
+//! m X'' = F_target + F_grains . d - c X'        |X'| <= v_max
+//! ```
+//!
+//! with `d` the unit direction of the target force, `X` the displacement along it and `F_grains` the push of
+//! the grains. The wall stands still where the grains push back with the target. It is moved by the same
+//! leapfrog as the grains, the dashpot implicitly, so that it never limits the step.
+
+use crate::material::SetupError;
+use crate::moving::WallMotion;
+use granular_core::{Dim, Linear};
+
+/// A wall pressed by a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Servo<D: Dim> {
+    /// Direction of the force on the wall; a unit vector.
+    pub direction: D::Vec,
+    /// Force on the wall along the direction \[N; N/m in the plane\]: pressure times area.
+    pub force: f64,
+    /// Mass of the wall \[kg; kg/m in the plane\].
+    pub mass: f64,
+    /// Dashpot between wall and frame \[N s/m\].
+    pub damping: f64,
+    /// Greatest speed of the wall \[m/s\].
+    pub max_speed: f64,
+}
+
+impl<D: Dim> Servo<D> {
+    pub(crate) fn check(&self, wall: &str) -> Result<(), SetupError> {
+        let refuse = |what: &str, value: f64, allowed| {
+            Err(SetupError::new(format!("{what} of wall `{wall}`"), value, allowed))
+        };
+        if (self.direction.length() - 1.0).abs() > 1e-9 || !self.direction.is_finite() {
+            return refuse("length of the direction of the force", self.direction.length(), "1");
+        }
+        if !self.force.is_finite() {
+            return refuse("force", self.force, "finite");
+        }
+        if !(self.mass.is_finite() && self.mass > 0.0) {
+            return refuse("mass", self.mass, "positive and finite");
+        }
+        if !(self.damping.is_finite() && self.damping >= 0.0) {
+            return refuse("damping", self.damping, "zero or more, and finite");
+        }
+        if self.max_speed.is_nan() || self.max_speed <= 0.0 {
+            return refuse("greatest speed", self.max_speed, "positive");
+        }
+        Ok(())
+    }
+}
+
+/// State of a servo; zero for walls that are not under a force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Drive {
+    /// Displacement along the direction \[m\]; at the middle of the step between its halves.
+    pub(crate) offset: f64,
+    /// Velocity along the direction at the start of the step \[m/s\].
+    velocity: f64,
+    /// Acceleration of the last step \[m/s^2\].
+    acceleration: f64,
+    /// Velocity at the instant of `offset`: predicted at the middle of the step \[m/s\].
+    pub(crate) now: f64,
+}
+
+impl Drive {
+    pub(crate) fn to_array(self) -> [f64; 3] {
+        [self.offset, self.velocity, self.acceleration]
+    }
+
+    pub(crate) fn from_array([offset, velocity, acceleration]: [f64; 3]) -> Self {
+        Self { offset, velocity, acceleration, now: velocity }
+    }
+
+    /// At rest where it is.
+    pub(crate) fn halted(self) -> Self {
+        Self { offset: self.offset, ..Self::default() }
+    }
+
+    /// Bound on the speed over a step \[m/s\].
+    pub(crate) fn fastest(self, dt: f64) -> f64 {
+        self.velocity.abs() + self.acceleration.abs() * dt
+    }
+
+    /// Drifts to the middle of the step and predicts the velocity there.
+    pub(crate) fn half_a_step<D: Dim>(self, dt: f64, motion: &WallMotion<D>, runs: bool) -> Self {
+        let WallMotion::Servo(servo) = motion else { return self };
+        if !runs {
+            return self;
+        }
+        let now = self.velocity + 0.5 * dt * self.acceleration;
+        let now = now.clamp(-servo.max_speed, servo.max_speed);
+        Self { offset: self.offset + 0.5 * dt * self.velocity, now, ..self }
+    }
+
+    /// Takes the push of the grains, and drifts the other half.
+    pub(crate) fn other_half<D: Dim>(self, dt: f64, motion: &WallMotion<D>, push: D::Vec) -> Self {
+        let WallMotion::Servo(servo) = motion else { return self };
+        let force = servo.force + push.dot(servo.direction);
+        // The dashpot acts on the mean of old and new velocity: stable for any damping.
+        let drag = 0.5 * dt * servo.damping / servo.mass;
+        let free = (self.velocity * (1.0 - drag) + dt * force / servo.mass) / (1.0 + drag);
+        let velocity = free.clamp(-servo.max_speed, servo.max_speed);
+        let acceleration = (velocity - self.velocity) / dt;
+        Self { offset: self.offset + 0.5 * dt * velocity, velocity, acceleration, now: velocity }
+    }
+}

@@ -1,0 +1,9 @@
+//! Diagrams against their definition.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail like tests")]
+
+mod diagrams;
+mod extreme;
+mod power;
+mod properties;
+mod support;
