@@ -9,7 +9,7 @@ use crate::validate::chance::Chance;
 use granular_core::D3;
 use granular_core::glam::DVec3;
 use granular_core::search::CellGrid;
-use granular_dem::{Dem3, Material, Materials, Options, Setup, Wall};
+use granular_dem::{ContactModel, Dem3, Elasticity, Material, Materials, Options, Setup, Wall};
 use std::f64::consts::PI;
 
 /// Solid fraction of the cube.
@@ -22,6 +22,9 @@ const OVERLAP: f64 = 1e-3;
 const ROUNDS: usize = 1500;
 /// Rounds between two searches for neighbours.
 const SEARCH_EVERY: usize = 5;
+
+/// Elastic constants of the Hertz contacts.
+const ELASTICITY: Elasticity = Elasticity { young_modulus: 5.0e7, poisson_ratio: 0.25 };
 
 /// Step \[s\]: a fiftieth of the contact time of two mean spheres under the linear law.
 pub(super) fn step() -> f64 {
@@ -109,13 +112,12 @@ fn push_apart(positions: &mut [DVec3], radii: &[f64], edge: f64) {
 }
 
 /// A state in an open box, ready to be timed.
-///
-/// # Errors
-/// When a sphere is out of range.
-pub(super) fn simulation(spheres: &[Ball<D3>]) -> Result<Dem3, Failure> {
+fn simulation(spheres: &[Ball<D3>], contact: ContactModel) -> Result<Dem3, Failure> {
     let wrong = |error: granular_dem::SetupError| Failure::Io(format!("state: {error}"));
     let mut materials = Materials::new();
+    let elasticity = (contact == ContactModel::Hertz).then_some(ELASTICITY);
     let material = Material {
+        elasticity,
         normal_stiffness: STIFFNESS,
         stiffness_ratio: 2.0 / 7.0,
         restitution: RESTITUTION,
@@ -136,7 +138,24 @@ pub(super) fn simulation(spheres: &[Ball<D3>]) -> Result<Dem3, Failure> {
     ];
     let grains = spheres.iter().map(|sphere| sphere.grain(glass)).collect();
     let gravity = DVec3::new(0.0, 0.0, -GRAVITY);
-    Dem3::new(Setup { materials, grains, walls, gravity, options: Options::default() }).map_err(wrong)
+    let options = Options { contact, ..Options::default() };
+    Dem3::new(Setup { materials, grains, walls, gravity, options }).map_err(wrong)
+}
+
+/// [`simulation`] with linear contacts.
+///
+/// # Errors
+/// When a sphere is out of range.
+pub(super) fn linear(spheres: &[Ball<D3>]) -> Result<Dem3, Failure> {
+    simulation(spheres, ContactModel::Linear)
+}
+
+/// [`simulation`] with Hertz-Mindlin contacts.
+///
+/// # Errors
+/// When a sphere is out of range.
+pub(super) fn hertz(spheres: &[Ball<D3>]) -> Result<Dem3, Failure> {
+    simulation(spheres, ContactModel::Hertz)
 }
 
 #[cfg(test)]

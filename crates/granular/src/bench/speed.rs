@@ -29,6 +29,9 @@ const WINDOW: Duration = Duration::from_secs(1);
 /// Grain-steps between looks at the clock.
 const GLANCE: usize = 1_000_000;
 
+const LINEAR: &str = "leapfrog, linear with friction, tension cut";
+const HERTZ: &str = "leapfrog, Hertz-Mindlin, tension cut";
+
 /// What to measure.
 #[derive(Clone, Debug)]
 pub struct Request {
@@ -71,6 +74,8 @@ pub struct Speed {
 /// A scene to measure on.
 struct Scene<D: Dim> {
     name: String,
+    /// Law and scheme.
+    scheme: &'static str,
     /// A simulation of a state, ready to be timed.
     simulation: fn(&[Ball<D>]) -> Result<Dem<D>, Failure>,
     /// Step \[s\].
@@ -79,13 +84,15 @@ struct Scene<D: Dim> {
 
 impl Scene<D2> {
     fn column(name: impl Into<String>) -> Self {
-        Self { name: name.into(), simulation: state::simulation, dt: state::DT }
+        Self { name: name.into(), scheme: LINEAR, simulation: state::simulation, dt: state::DT }
     }
 }
 
 impl Scene<D3> {
-    fn settling(name: impl Into<String>) -> Self {
-        Self { name: name.into(), simulation: settling::simulation, dt: settling::step() }
+    /// One scene for each law.
+    fn settling(name: &str) -> [Self; 2] {
+        let scene = |scheme, simulation| Self { name: name.into(), scheme, simulation, dt: settling::step() };
+        [scene(LINEAR, settling::linear), scene(HERTZ, settling::hertz)]
     }
 }
 
@@ -102,7 +109,10 @@ pub fn dem(request: &Request) -> Result<Vec<Speed>, Failure> {
     if let Some(path) = &request.state {
         let name = path.display().to_string();
         if state::holds_spheres(path)? {
-            measure(&Scene::settling(name), &state::read(path)?, &pools, request, &mut speeds)?;
+            let spheres = state::read(path)?;
+            for scene in Scene::settling(&name) {
+                measure(&scene, &spheres, &pools, request, &mut speeds)?;
+            }
         } else {
             measure(&Scene::column(name), &state::read(path)?, &pools, request, &mut speeds)?;
         }
@@ -112,7 +122,10 @@ pub fn dem(request: &Request) -> Result<Vec<Speed>, Failure> {
         measure(&Scene::column("column collapse"), &state::falling(count)?, &pools, request, &mut speeds)?;
     }
     for &count in &request.spheres {
-        measure(&Scene::settling("settling"), &settling::loose(count), &pools, request, &mut speeds)?;
+        let spheres = settling::loose(count);
+        for scene in Scene::settling("settling") {
+            measure(&scene, &spheres, &pools, request, &mut speeds)?;
+        }
     }
     Ok(speeds)
 }
@@ -141,7 +154,7 @@ fn measure<D: Dim>(
         let rate = median(rates);
         speeds.push(Speed {
             scene: scene.name.clone(),
-            scheme: "leapfrog, linear with friction, tension cut",
+            scheme: scene.scheme,
             n: balls.len(),
             threads,
             rate,
