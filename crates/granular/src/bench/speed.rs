@@ -71,13 +71,16 @@ pub struct Speed {
     pub bandwidth_share: f64,
 }
 
+/// Makes a simulation of a state.
+type Start<D> = fn(&[Ball<D>]) -> Result<Dem<D>, Failure>;
+
 /// A scene to measure on.
 struct Scene<D: Dim> {
     name: String,
     /// Law and scheme.
     scheme: &'static str,
     /// A simulation of a state, ready to be timed.
-    simulation: fn(&[Ball<D>]) -> Result<Dem<D>, Failure>,
+    simulation: Start<D>,
     /// Step \[s\].
     dt: f64,
 }
@@ -91,7 +94,12 @@ impl Scene<D2> {
 impl Scene<D3> {
     /// One scene for each law.
     fn settling(name: &str) -> [Self; 2] {
-        let scene = |scheme, simulation| Self { name: name.into(), scheme, simulation, dt: settling::step() };
+        let scene = |scheme, simulation: Start<D3>| Self {
+            name: name.into(),
+            scheme,
+            simulation,
+            dt: settling::step(),
+        };
         [scene(LINEAR, settling::linear), scene(HERTZ, settling::hertz)]
     }
 }

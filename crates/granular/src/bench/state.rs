@@ -33,7 +33,7 @@ const SOLID: f64 = 0.815;
 const TAKEN_OFF: f64 = 0.15;
 
 /// A grain of a state: position \[m\], velocity \[m/s\], spin \[rad/s\] and radius \[m\].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Ball<D: Dim> {
     pub(super) position: D::Vec,
     pub(super) velocity: D::Vec,
@@ -187,7 +187,11 @@ mod tests {
         write(balls, &path).unwrap();
         let (back, spheres) = (read(&path), holds_spheres(&path));
         std::fs::remove_file(&path).unwrap();
-        assert_eq!(back.unwrap(), balls);
+        let same = |a: &Ball<D>, b: &Ball<D>| {
+            a.position == b.position && a.velocity == b.velocity && a.spin == b.spin && a.radius == b.radius
+        };
+        let back = back.unwrap();
+        assert!(back.len() == balls.len() && back.iter().zip(balls).all(|(a, b)| same(a, b)), "{back:?}");
         assert_eq!(spheres.unwrap(), D::N == 3);
     }
 
@@ -205,7 +209,7 @@ mod tests {
         comes_back("spheres", &[sphere, Ball::at_rest(DVec3::X, 2.0)]);
         comes_back("resting", &[Ball::<D3>::at_rest(DVec3::X, 2.0)]);
         assert_eq!(ball::<D2>("1 2 3").map(|disk| disk.radius), Some(3.0));
-        assert_eq!(ball::<D2>("1 2 3 4"), None);
+        assert!(ball::<D2>("1 2 3 4").is_none());
         assert_eq!(ball::<D3>("1 2 3 4").map(|sphere| sphere.radius), Some(4.0));
     }
 }
