@@ -2,6 +2,7 @@
 
 mod bench;
 mod calibrate;
+mod plot;
 mod sweep;
 mod validate;
 
@@ -82,11 +83,8 @@ enum Verb {
     },
     /// Run a grid of scenes and collect a table; the same command goes on where it was.
     Sweep(sweep::Sweep),
-    /// Draw the figures of a run again.
-    Plot {
-        /// Run folder.
-        folder: PathBuf,
-    },
+    /// Draw the figures of a run again, or a figure of a sweep.
+    Plot(plot::Plot),
     /// Compare the program with known answers; exit code 1 when a required one is missed.
     Validate(validate::Validate),
     /// Find what a continuum of the grains of a scene is like.
@@ -157,14 +155,7 @@ impl Verb {
                 show(common, &result(&facts), || summary(&facts, &folder));
                 Ok(())
             }
-            Self::Plot { folder } => {
-                let paths = run::plot(&folder)?;
-                let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-                show(common, &json!(lines), || {
-                    lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
-                });
-                Ok(())
-            }
+            Self::Plot(verb) => verb.execute(common),
             Self::Sweep(verb) => verb.execute(common),
             Self::Bench(verb) => verb.execute(common),
             Self::Calibrate(calibrate) => calibrate.execute(common),

@@ -19,6 +19,7 @@
 //! ```
 
 mod axis;
+mod figure;
 mod forecast;
 mod lock;
 mod slurm;
@@ -27,6 +28,7 @@ mod table;
 mod work;
 
 pub use axis::Axis;
+pub use figure::{View, is_sweep, plot};
 pub use forecast::Forecast;
 pub use slurm::array_script;
 pub use state::State;
@@ -108,9 +110,13 @@ impl Plan {
         let axes: Vec<&str> = self.axes.iter().map(String::as_str).collect();
         let path = out.join("table.csv");
         table::write(&path, &table::text(&axes, &runs))?;
-        let states = runs.into_iter().map(|(_, state, _)| state);
-        let mut report = self.list(states);
+        let mut report = self.list(runs.iter().map(|(_, state, _)| state.clone()));
         report["table"] = json!(path.display().to_string());
+        for (k, (.., measures)) in runs.iter().enumerate() {
+            let number = |value: &str| json!(value.parse::<f64>().ok());
+            let measures = measures.iter().map(|(name, value)| (name.clone(), number(value)));
+            report["runs"][k]["measures"] = Value::Object(measures.collect());
+        }
         state::write_json(&out.join("sweep.json"), &report)?;
         Ok(report)
     }

@@ -66,6 +66,8 @@ fn a_sweep_killed_again_and_again_ends_in_the_same_table() {
     assert!(runs(&whole).iter().all(|run| run["exit"] == "done"), "{whole}");
     assert_eq!(runs(&whole)[1]["values"]["gravity"], "[0, -1.62]");
 
+    draws_figures(&scratch);
+
     let seed = SystemTime::UNIX_EPOCH.elapsed().map_or(1, |since| since.as_nanos() as u64);
     println!("moments from seed {seed}");
     let mut killed = 0;
@@ -87,6 +89,37 @@ fn a_sweep_killed_again_and_again_ends_in_the_same_table() {
         assert_eq!(facts(&one)["state_hash"], facts(&other)["state_hash"]);
         assert!(results(&one) == results(&other), "files of {folder} differ");
     }
+}
+
+/// Figures of the sweep in the folder `whole`.
+fn draws_figures(scratch: &Scratch) {
+    let plot = |more: &[&str]| scratch.granular(&[&["plot", "whole"], more].concat());
+    fs::write(scratch.path("laws.csv"), "law,x,y\n\"Theirs, 2004\",0.3,0.4\n\"Theirs, 2004\",0.5,0.2\n")
+        .unwrap();
+    assert_eq!(plot(&["--reference", "laws.csv"]).expect(0).out, "whole/runout.svg, whole/runout.png\n");
+    let figure = fs::read_to_string(scratch.path("whole/runout.svg")).unwrap();
+    for part in
+        ["materials.glass.friction", "runout", "this sweep", "Theirs, 2004", "means over up to 2 runs"]
+    {
+        assert!(figure.contains(part), "`{part}` is not in the figure");
+    }
+    plot(&["--y", "series:front [m]", "--by", "gravity", "--log"]).expect(0);
+    let figure = fs::read_to_string(scratch.path("whole/series_front__m.svg")).unwrap();
+    assert!(figure.contains("gravity = [0, -1.62]") && !figure.contains("means over"), "{figure}");
+    let wrong: &[(&[&str], &[&str])] = &[
+        (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
+        (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout, "]),
+        (&["--x", "gravity"], &["--x: `gravity` is `[0, -9.81]` in a run"]),
+        (&["--reference", "nothing.csv"], &["nothing.csv"]),
+        (&["--reference", "small.ron"], &["small.ron:2: `", "a label, x and y are expected"]),
+    ];
+    for (arguments, parts) in wrong {
+        plot(arguments).expect(5).says(parts);
+    }
+    let run = fs::read_dir(scratch.path("whole")).unwrap().map(|entry| entry.unwrap().path());
+    let run = run.into_iter().find(|path| path.join("run.json").is_file()).unwrap();
+    let of_run = scratch.granular(&["plot", run.to_str().unwrap(), "--log"]);
+    of_run.expect(5).says(&["holds no sweep", "are for sweeps"]);
 }
 
 #[test]
