@@ -66,9 +66,7 @@ fn an_interrupted_run_is_resumed_to_the_same_bits() {
 }
 
 /// Kills a run at a random moment, takes it up again, kills that, and so on. `GRANULAR_KILLS` is
-/// the number of kills, 8 by default; a long trial is
-///
-/// `GRANULAR_KILLS=1000 cargo test -p granular --release killed_again`
+/// the number of kills, 8 by default; `scripts/kills` makes a long trial.
 #[test]
 fn a_run_killed_again_and_again_ends_in_the_same_bits() {
     let kills = std::env::var("GRANULAR_KILLS").map_or(8, |count| count.parse().expect("a number of kills"));
