@@ -12,7 +12,7 @@ use std::path::PathBuf;
 pub(super) struct Plot {
     /// Folder of a run or of a sweep.
     folder: PathBuf,
-    /// Of a sweep: the axis along x; its first one by default.
+    /// Of a sweep: the axis along x, its first one by default; or a column of its table, of which each run has its own value.
     #[arg(long, value_name = "AXIS")]
     x: Option<String>,
     /// Of a sweep: the number along y, a column of its table; `runout` by default.

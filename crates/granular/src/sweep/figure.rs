@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 /// What to draw of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct View {
-    /// Axis of the sweep along x; its first one by default.
+    /// Axis of the sweep along x, or a number as for y, of which every run has its own; the first
+    /// axis by default.
     pub x: Option<String>,
     /// Metric, or `<table>:<column>`, along y; `runout` by default.
     pub y: Option<String>,
@@ -30,6 +31,8 @@ struct Collected {
 
 /// Values at one x on one curve.
 type Group = (f64, Vec<f64>);
+/// Label and points of a curve from elsewhere.
+type Curve = (String, Vec<[f64; 2]>);
 
 /// Whether a folder holds a sweep.
 pub fn is_sweep(folder: &Path) -> bool {
@@ -39,7 +42,7 @@ pub fn is_sweep(folder: &Path) -> bool {
 /// Draws a measured number over an axis as `<y>.svg` and `.png` in the folder of a sweep; returns the
 /// path without ending.
 ///
-/// At each x stands the mean over the runs that are done, with its standard error as a bar where
+/// At each value of an axis stands the mean over the runs that are done, with its standard error as a bar where
 /// there are several. Runs that are not done are left out, and a note says so.
 ///
 /// # Errors
@@ -47,22 +50,17 @@ pub fn is_sweep(folder: &Path) -> bool {
 /// written.
 pub fn plot(folder: &Path, view: &View) -> Result<PathBuf, Failure> {
     let sweep = Collected::read(folder)?;
-    let x = sweep.axis(view.x.as_deref(), "--x")?;
-    let by = view.by.as_deref().map(|by| sweep.axis(Some(by), "--by")).transpose()?;
+    let x = sweep.along(view.x.as_deref())?;
+    let by = view.by.as_deref().map(|by| sweep.axis(by, "--by")).transpose()?;
     let y = view.y.as_deref().unwrap_or("runout");
     let mut curves: Vec<(String, Vec<Group>)> = Vec::new();
     let (mut averaged, mut left_out) = (0, 0);
     for run in &sweep.runs {
-        let Some(value) = run["measures"][y].as_f64() else {
+        let (Some(value), Some(at)) = (run["measures"][y].as_f64(), sweep.place(run, x)?) else {
             left_out += 1;
             continue;
         };
         let label = by.map_or(String::new(), |by| format!("{by} = {}", text(&run["values"][by])));
-        let at = number(text(&run["values"][x])).ok_or_else(|| {
-            let reason =
-                format!("`{x}` is `{}` in a run, which begins with no number", text(&run["values"][x]));
-            Failure::io("--x", reason)
-        })?;
         let groups = entry(&mut curves, label);
         match groups.iter_mut().find(|(known, _)| *known == at) {
             Some((_, values)) => {
@@ -105,16 +103,35 @@ impl Collected {
         Ok(Self { path, axes, runs: list("runs") })
     }
 
-    /// The axis of this name, or the first one.
-    fn axis<'a>(&'a self, name: Option<&str>, flag: &str) -> Result<&'a str, Failure> {
-        let found = match name {
-            Some(name) => self.axes.iter().find(|axis| *axis == name),
-            None => self.axes.first(),
-        };
-        found.map(String::as_str).ok_or_else(|| {
-            let (name, axes) = (name.unwrap_or_default(), self.axes.join(", "));
-            Failure::io(flag, format!("`{name}` is no axis of this sweep; allowed: {axes}"))
+    /// The axis of this name.
+    fn axis<'a>(&self, name: &'a str, flag: &str) -> Result<&'a str, Failure> {
+        if self.axes.iter().any(|axis| axis == name) {
+            return Ok(name);
+        }
+        let axes = self.axes.join(", ");
+        Err(Failure::io(flag, format!("`{name}` is no axis of this sweep; allowed: {axes}")))
+    }
+
+    /// What is along x: an axis, or a number that runs have measured.
+    fn along<'a>(&'a self, name: Option<&'a str>) -> Result<&'a str, Failure> {
+        let name = name.or(self.axes.first().map(String::as_str)).unwrap_or_default();
+        if self.runs.iter().any(|run| run["measures"][name].is_number()) {
+            return Ok(name);
+        }
+        self.axis(name, "--x").map_err(|failure| match failure {
+            Failure::Io(reason) => Failure::Io(format!("{reason}, or a number as for --y")),
+            other => other,
         })
+    }
+
+    /// Where a run stands along x.
+    fn place(&self, run: &Value, x: &str) -> Result<Option<f64>, Failure> {
+        if !self.axes.iter().any(|axis| axis == x) {
+            return Ok(run["measures"][x].as_f64());
+        }
+        let label = text(&run["values"][x]);
+        let reason = || format!("`{x}` is `{label}` in a run, which begins with no number");
+        number(label).map(Some).ok_or_else(|| Failure::io("--x", reason()))
     }
 
     fn no_such_number(&self, name: &str) -> String {
@@ -166,7 +183,7 @@ fn series(label: String, mut groups: Vec<Group>) -> Series {
 }
 
 /// Curves of all reference files. A label may hold commas: the last two fields are the numbers.
-fn references(view: &View) -> Result<Vec<(String, Vec<[f64; 2]>)>, Failure> {
+fn references(view: &View) -> Result<Vec<Curve>, Failure> {
     let mut curves = Vec::new();
     for path in &view.references {
         let content = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;

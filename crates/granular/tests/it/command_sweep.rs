@@ -106,6 +106,10 @@ fn draws_figures(scratch: &Scratch) {
     plot(&["--y", "series:front [m]", "--by", "gravity", "--log"]).expect(0);
     let figure = fs::read_to_string(scratch.path("whole/series_front__m.svg")).unwrap();
     assert!(figure.contains("gravity = [0, -1.62]") && !figure.contains("means over"), "{figure}");
+    // Each run has its own aspect ratio: four points, no means.
+    plot(&["--x", "aspect_ratio", "--y", "height"]).expect(0);
+    let figure = fs::read_to_string(scratch.path("whole/height.svg")).unwrap();
+    assert!(figure.contains("aspect_ratio") && !figure.contains("means over"), "{figure}");
     let wrong: &[(&[&str], &[&str])] = &[
         (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
         (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout, "]),
