@@ -1,7 +1,7 @@
 //! Contacts between two materials that are stated instead of mixed.
 
-use granular_core::Solver;
 use granular_core::glam::{DVec2, DVec3};
+use granular_core::{Section, Solver};
 use granular_dem::{Dem2, Dem3, Grain, Material, Materials, Options, PairOverride, Setup, Wall};
 
 const RADIUS: f64 = 1e-3;
@@ -71,4 +71,27 @@ fn friction_may_be_stated_of_one_pair_alone() {
     smooth.advance(dt, steps).unwrap();
     assert_eq!((smooth.grain(0).velocity.x, smooth.grain(0).spin), (1.0, 0.0));
     assert!(smooth.memory().bytes_per_item < dem.memory().bytes_per_item);
+}
+
+/// The friction of materials is state, that of pairs belongs to the set-up.
+#[test]
+fn a_restart_keeps_stated_pairs_and_changed_materials() {
+    let fresh = || sliding(PairOverride { friction: Some(0.3), ..PairOverride::default() });
+    let mut dem = fresh();
+    let dt = dem.recommended_step();
+    dem.advance(dt, 100).unwrap();
+    let floor = dem.materials().iter().count() - 1;
+    let friction = dem.materials().pair(0, floor).friction;
+    dem.set_friction(dem.grain(0).material, 0.9);
+    assert_eq!((dem.materials().pair(0, floor).friction, friction), (0.3, 0.3));
+    dem.advance(dt, 100).unwrap();
+    let mut section = Section::new("solver");
+    dem.save(&mut section);
+    let mut other = fresh();
+    other.restore(&section).unwrap();
+    for dem in [&mut dem, &mut other] {
+        dem.advance(dt, 100).unwrap();
+    }
+    assert_eq!(dem.grain(0), other.grain(0));
+    assert_eq!(dem.materials(), other.materials());
 }

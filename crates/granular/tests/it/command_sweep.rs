@@ -261,3 +261,22 @@ fn two_sweeps_in_one_folder_share_the_work() {
     scratch.granular(&start).expect(0).says(&["4 of 4 runs are done"]);
     assert_eq!(table(&scratch.path("sweep")).matches(",done,").count(), 4);
 }
+
+#[test]
+fn a_run_that_a_guard_stopped_starts_anew_when_it_is_tried_again() {
+    let scratch = Scratch::new("sweep-guard");
+    fs::write(scratch.path("flow.ron"), include_str!("flow.ron")).unwrap();
+    let start = ["sweep", "flow.ron", "--set", "gravity=[20, 0], [21, 0]", "--out", "sweep"];
+    let said = ["2 of 2 runs failed", "run 0 (gravity=[20, 0]; ", "stopped: ", "density over that at rest"];
+    scratch.granular(&start).expect(4).says(&said);
+    let rows = table(&scratch.path("sweep"));
+    assert_eq!(rows.matches(",stopped\n").count(), 2, "{rows}");
+    let forecast = scratch.granular(&[&start[..], &["--dry-run", "--retry"]].concat()).expect(0).out;
+    assert!(forecast.contains("2 runs: 2 would start, 0 go on"), "{forecast}");
+    let retried = scratch.granular(&[&start[..], &["--only", "1", "--retry"]].concat()).expect(4);
+    retried.says(&["1 of 1 runs failed", "run 1 (gravity=[21, 0]; ", ": starts", "--retry"]);
+    scratch
+        .granular(&["plot", "sweep", "--x", "height"])
+        .expect(5)
+        .says(&["--x: `height` is no axis", "gravity"]);
+}
