@@ -15,6 +15,7 @@ mod progress;
 pub mod run;
 pub mod scene;
 pub mod scene_file;
+pub mod sweep;
 pub mod validate;
 
 /// Scenes to start from: name and text. The first line of each is a comment that says what it is.
