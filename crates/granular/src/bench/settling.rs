@@ -99,14 +99,18 @@ fn push_apart(positions: &mut [DVec3], radii: &[f64], edge: f64) {
                 push[second] -= move_by;
             }
         }
-        for (k, position) in positions.iter_mut().enumerate() {
+        for (k, position) in positions.iter().enumerate() {
             let (low, high) = (DVec3::splat(radii[k]), DVec3::splat(edge - radii[k]));
-            push[k] += (low - *position).max(DVec3::ZERO) - (*position - high).max(DVec3::ZERO);
-            velocity[k] = velocity[k] * 0.8 + push[k] * 0.2;
-            *position += velocity[k];
+            let outside = (low - *position).max(DVec3::ZERO) - (*position - high).max(DVec3::ZERO);
+            deepest = deepest.max(outside.abs().max_element());
+            push[k] += outside;
         }
         if deepest < OVERLAP * mean {
             break;
+        }
+        for (k, position) in positions.iter_mut().enumerate() {
+            velocity[k] = velocity[k] * 0.8 + push[k] * 0.2;
+            *position += velocity[k];
         }
     }
 }
@@ -166,13 +170,14 @@ mod tests {
     fn the_packing_fills_the_box_and_hardly_overlaps() {
         let spheres = loose(500);
         let edge = edge(spheres.iter().map(|sphere| sphere.radius));
-        let deepest = OVERLAP * 0.5 * (DIAMETERS[0] + DIAMETERS[1]);
+        // Walls take room, so that a box as small as this one may end its rounds before `OVERLAP`.
+        let deepest = 0.01 * 0.5 * (DIAMETERS[0] + DIAMETERS[1]);
         for (k, a) in spheres.iter().enumerate() {
-            assert!(
-                (a.position.min(DVec3::splat(edge) - a.position)).min_element() > a.radius - 3.0 * deepest
-            );
+            let to_wall = a.position.min(DVec3::splat(edge) - a.position).min_element();
+            assert!(to_wall > a.radius - deepest, "{} deep of {deepest}", a.radius - to_wall);
             for b in &spheres[..k] {
-                assert!(a.radius + b.radius - (a.position - b.position).length() < 3.0 * deepest);
+                let overlap = a.radius + b.radius - (a.position - b.position).length();
+                assert!(overlap < deepest, "{overlap} deep");
             }
         }
         assert!((step() - 0.65e-6).abs() < 0.01e-6, "{}", step());
