@@ -10,8 +10,9 @@ use std::path::PathBuf;
 /// What `granular plot` takes.
 #[derive(Args, Debug)]
 pub(super) struct Plot {
-    /// Folder of a run or of a sweep.
-    folder: PathBuf,
+    /// Folder of a run or of a sweep; several sweeps make one figure, in the folder of the first.
+    #[arg(required = true, value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
     /// Of a sweep: the axis along x, its first one by default; or a column of its table, of which each run has its own value.
     #[arg(long, value_name = "AXIS")]
     x: Option<String>,
@@ -24,6 +25,9 @@ pub(super) struct Plot {
     /// Of a sweep: logarithmic axes.
     #[arg(long)]
     log: bool,
+    /// Of a sweep: fit a power law to each curve between these x, such as 4..10.
+    #[arg(long, value_name = "LOW..HIGH", value_parser = range)]
+    fit: Option<[f64; 2]>,
     /// Of a sweep: a CSV file of curves from elsewhere, with rows of label, x and y under a head line.
     #[arg(long = "reference", value_name = "FILE")]
     references: Vec<PathBuf>,
@@ -31,16 +35,17 @@ pub(super) struct Plot {
 
 impl Plot {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
-        let Self { folder, x, y, by, log, references } = self;
-        let view = sweep::View { x, y, by, log, references };
-        let paths = if sweep::is_sweep(&folder) {
-            vec![sweep::plot(&folder, &view)?]
-        } else if view == sweep::View::default() {
-            run::plot(&folder)?
-        } else {
-            let reason =
-                "holds no sweep (no sweep.json); --x, --y, --by, --log and --reference are for sweeps";
-            return Err(Failure::io(folder.display(), reason));
+        let Self { folders, x, y, by, log, fit, references } = self;
+        let view = sweep::View { x, y, by, log, fit, references };
+        let runs: Vec<&PathBuf> = folders.iter().filter(|folder| !sweep::is_sweep(folder)).collect();
+        let paths = match runs.first() {
+            None => vec![sweep::plot(&folders, &view)?],
+            Some(run) if folders.len() == 1 && view == sweep::View::default() => run::plot(run)?,
+            Some(run) => {
+                let reason = "holds no sweep (no sweep.json); several folders, --x, --y, --by, --log, --fit and \
+                              --reference are for sweeps";
+                return Err(Failure::io(run.display(), reason));
+            }
         };
         let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         show(common, &json!(lines), || {
@@ -48,4 +53,11 @@ impl Plot {
         });
         Ok(())
     }
+}
+
+/// Reads `4..10`.
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let ends = text.split_once("..").and_then(|(low, high)| Some([low.parse().ok()?, high.parse().ok()?]));
+    let ends = ends.filter(|[low, high]: &[f64; 2]| *low > 0.0 && low < high && high.is_finite());
+    ends.ok_or_else(|| "two numbers above zero are expected, the smaller first, such as 4..10".to_owned())
 }

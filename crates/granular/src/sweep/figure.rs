@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What to draw of a sweep.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct View {
     /// Axis of the sweep along x, or a number as for y, of which every run has its own; the first
     /// axis by default.
@@ -18,6 +18,8 @@ pub struct View {
     pub by: Option<String>,
     /// Whether both axes are logarithmic.
     pub log: bool,
+    /// Least and largest x between which a power law is fitted to each curve.
+    pub fit: Option<[f64; 2]>,
     /// Files of curves from elsewhere: rows of label, x and y after a head line.
     pub references: Vec<PathBuf>,
 }
@@ -39,40 +41,46 @@ pub fn is_sweep(folder: &Path) -> bool {
     folder.join("sweep.json").is_file()
 }
 
-/// Draws a measured number over an axis as `<y>.svg` and `.png` in the folder of a sweep; returns the
-/// path without ending.
+/// Draws a measured number over an axis as `<y>.svg` and `.png` in the folder of the first of these
+/// sweeps; returns the path without ending.
 ///
-/// At each value of an axis stands the mean over the runs that are done, with its standard error as a bar where
-/// there are several. Runs that are not done are left out, and a note says so.
+/// At each value of an axis stands the mean over the runs that are done, with its standard error as a
+/// bar where there are several. Runs that are not done are left out, and a note says so.
 ///
 /// # Errors
-/// When the folder is none of a sweep, there is no such axis or number, or a file cannot be read or
+/// When a folder is none of a sweep, there is no such axis or number, or a file cannot be read or
 /// written.
-pub fn plot(folder: &Path, view: &View) -> Result<PathBuf, Failure> {
-    let sweep = Collected::read(folder)?;
-    let x = sweep.along(view.x.as_deref())?;
-    let by = view.by.as_deref().map(|by| sweep.axis(by, "--by")).transpose()?;
+pub fn plot(folders: &[PathBuf], view: &View) -> Result<PathBuf, Failure> {
     let y = view.y.as_deref().unwrap_or("runout");
-    let mut curves: Vec<(String, Vec<Group>)> = Vec::new();
-    let (mut averaged, mut left_out) = (0, 0);
-    for run in &sweep.runs {
-        let (Some(value), Some(at)) = (run["measures"][y].as_f64(), sweep.place(run, x)?) else {
-            left_out += 1;
-            continue;
-        };
-        let label = by.map_or(String::new(), |by| format!("{by} = {}", text(&run["values"][by])));
-        let groups = entry(&mut curves, label);
-        match groups.iter_mut().find(|(known, _)| *known == at) {
-            Some((_, values)) => {
-                values.push(value);
-                averaged = averaged.max(values.len());
-            }
-            None => groups.push((at, vec![value])),
-        }
+    let mut curves = Vec::new();
+    let (mut counts, mut label_of_x) = (Counts::default(), None);
+    for folder in folders {
+        let sweep = Collected::read(folder)?;
+        let name = folder.file_name().filter(|_| folders.len() > 1).unwrap_or_default();
+        sweep.add_curves(&name.to_string_lossy(), y, view, &mut curves, &mut counts)?;
+        label_of_x.get_or_insert(sweep.along(view.x.as_deref())?.to_owned());
     }
-    if curves.is_empty() {
-        return Err(Failure::io("--y", sweep.no_such_number(y)));
-    }
+    let x = label_of_x.unwrap_or_default();
+    let chart = chart([&x, y], view, curves, &counts)?;
+    let place = folders.first().map_or(Path::new("."), PathBuf::as_path);
+    let path = place.join(y.replace([':', ' ', '/', '[', ']'], "_").trim_end_matches('_'));
+    chart.figure().save(&path)?;
+    Ok(path)
+}
+
+/// What notes tell.
+#[derive(Default)]
+struct Counts {
+    runs: usize,
+    left_out: usize,
+    /// Most runs of which a mean was taken.
+    averaged: usize,
+}
+
+/// Label of a series, and its values by x.
+type Groups = (String, Vec<Group>);
+
+fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -> Result<Chart, Failure> {
     let axis = |label: &str| if view.log { Axis::log(label) } else { Axis::linear(label) };
     let mut chart = Chart::new("", axis(x), axis(y));
     for (colour, (label, curve)) in references(view)?.into_iter().enumerate() {
@@ -80,17 +88,23 @@ pub fn plot(folder: &Path, view: &View) -> Result<PathBuf, Failure> {
     }
     for (colour, (label, groups)) in curves.into_iter().enumerate() {
         let label = if label.is_empty() { "this sweep".to_owned() } else { label };
-        chart = chart.with(series(label, groups).colour(colour % 7));
+        let series = series(label.clone(), groups).colour(colour % 7);
+        if let Some(range) = view.fit {
+            let law = PowerLaw::of(&series.points, range).ok_or_else(|| {
+                Failure::io("--fit", format!("`{label}` has no three points in that range, all above zero"))
+            })?;
+            chart = chart.with(law.series(range).colour(colour % 7)).note(format!("{label}: {law}"));
+        }
+        chart = chart.with(series);
     }
-    if averaged > 1 {
-        chart = chart.note(format!("means over up to {averaged} runs, bars: their standard error"));
+    if counts.averaged > 1 {
+        chart = chart.note(format!("means over up to {} runs, bars: their standard error", counts.averaged));
     }
-    if left_out > 0 {
-        chart = chart.note(format!("{left_out} of {} runs have no value and are left out", sweep.runs.len()));
+    if counts.left_out > 0 {
+        let Counts { runs, left_out, .. } = counts;
+        chart = chart.note(format!("{left_out} of {runs} runs have no value and are left out"));
     }
-    let path = folder.join(y.replace([':', ' ', '/', '[', ']'], "_").trim_end_matches('_'));
-    chart.figure().save(&path)?;
-    Ok(path)
+    Ok(chart)
 }
 
 impl Collected {
@@ -101,6 +115,41 @@ impl Collected {
         let list = |key: &str| facts[key].as_array().cloned().unwrap_or_default();
         let axes = list("axes").iter().filter_map(Value::as_str).map(str::to_owned).collect();
         Ok(Self { path, axes, runs: list("runs") })
+    }
+
+    /// Adds the curves of this sweep; their labels begin with its `name`.
+    fn add_curves(
+        &self,
+        name: &str,
+        y: &str,
+        view: &View,
+        curves: &mut Vec<Groups>,
+        counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        let x = self.along(view.x.as_deref())?;
+        let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
+        let before = counts.left_out;
+        for run in &self.runs {
+            counts.runs += 1;
+            let (Some(value), Some(at)) = (run["measures"][y].as_f64(), self.place(run, x)?) else {
+                counts.left_out += 1;
+                continue;
+            };
+            let of_axis = by.map(|by| format!("{by} = {}", text(&run["values"][by])));
+            let parts = [name].into_iter().chain(of_axis.as_deref()).filter(|part| !part.is_empty());
+            let groups = entry(curves, parts.collect::<Vec<_>>().join(", "));
+            match groups.iter_mut().find(|(known, _)| *known == at) {
+                Some((_, values)) => {
+                    values.push(value);
+                    counts.averaged = counts.averaged.max(values.len());
+                }
+                None => groups.push((at, vec![value])),
+            }
+        }
+        if counts.left_out - before == self.runs.len() {
+            return Err(Failure::io("--y", self.no_such_number(y)));
+        }
+        Ok(())
     }
 
     /// The axis of this name.
@@ -200,4 +249,80 @@ fn references(view: &View) -> Result<Vec<Curve>, Failure> {
         }
     }
     Ok(curves)
+}
+
+/// `y = factor x^exponent`, from least squares of the logarithms.
+struct PowerLaw {
+    factor: f64,
+    exponent: f64,
+    /// Standard error of the exponent.
+    error: f64,
+}
+
+impl PowerLaw {
+    /// The law of the points in a range of x; none when there are fewer than three, or one is not
+    /// above zero.
+    fn of(points: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<Self> {
+        let inside = points.iter().filter(|[x, _]| (low..=high).contains(x));
+        let logs: Vec<[f64; 2]> = inside.map(|[x, y]| [x.ln(), y.ln()]).collect();
+        if logs.len() < 3 || logs.iter().flatten().any(|log| !log.is_finite()) {
+            return None;
+        }
+        let count = logs.len() as f64;
+        let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
+        let means = [mean(0), mean(1)];
+        let sum = |a: usize, b: usize| {
+            logs.iter().map(|log| (log[a] - means[a]) * (log[b] - means[b])).sum::<f64>()
+        };
+        let exponent = sum(0, 1) / sum(0, 0);
+        let scatter = (sum(1, 1) - exponent * sum(0, 1)).max(0.0) / (count - 2.0);
+        let law = Self {
+            factor: (means[1] - exponent * means[0]).exp(),
+            exponent,
+            error: (scatter / sum(0, 0)).sqrt(),
+        };
+        law.exponent.is_finite().then_some(law)
+    }
+
+    fn series(&self, range: [f64; 2]) -> Series {
+        // Enough points that the curve looks smooth also on linear axes.
+        let x = |k: i32| range[0] * (range[1] / range[0]).powf(f64::from(k) / 40.0);
+        let points = (0..=40).map(|k| [x(k), self.factor * x(k).powf(self.exponent)]);
+        Series::new("", points.collect(), Style::Line)
+    }
+}
+
+impl std::fmt::Display for PowerLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { factor, exponent, error } = self;
+        write!(f, "fitted {factor:.4} x^{exponent:.3}, exponent ± {error:.3}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_is_found_again() {
+        let points: Vec<[f64; 2]> = (1..9).map(|k| [f64::from(k), 2.7 * f64::from(k).powf(0.6)]).collect();
+        let law = PowerLaw::of(&points, [2.0, 8.0]).unwrap();
+        assert!((law.factor - 2.7).abs() < 1e-12 && (law.exponent - 0.6).abs() < 1e-12, "{law}");
+        assert!(law.error < 1e-7, "{law}");
+        assert!(PowerLaw::of(&points, [7.0, 8.0]).is_none());
+        assert!(PowerLaw::of(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]], [1.0, 3.0]).is_none());
+        // By hand: logarithms 0, 1, 2 and 0, 2, 1 have slope 1/2, squares left 3/2, error sqrt(3/2/2).
+        let e = std::f64::consts::E;
+        let law = PowerLaw::of(&[[1.0, 1.0], [e, e * e], [e * e, e]], [0.5, 10.0]).unwrap();
+        assert!((law.exponent - 0.5).abs() < 1e-12 && (law.error - 0.75_f64.sqrt()).abs() < 1e-12, "{law}");
+    }
+
+    #[test]
+    fn means_have_the_standard_error_of_their_values() {
+        let found = series("a".to_owned(), vec![(2.0, vec![1.0, 3.0]), (1.0, vec![5.0])]);
+        assert_eq!(found.points, [[1.0, 5.0], [2.0, 2.0]]);
+        assert_eq!(found.style, Style::ErrorBars(vec![0.0, 1.0]));
+        assert_eq!(number("68 mm"), Some(68.0));
+        assert_eq!(number("Ballistic"), None);
+    }
 }

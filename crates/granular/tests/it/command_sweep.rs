@@ -110,7 +110,17 @@ fn draws_figures(scratch: &Scratch) {
     plot(&["--x", "aspect_ratio", "--y", "height"]).expect(0);
     let figure = fs::read_to_string(scratch.path("whole/height.svg")).unwrap();
     assert!(figure.contains("aspect_ratio") && !figure.contains("means over"), "{figure}");
+    // One figure of two sweeps, which are the same here; a law through four points.
+    let two = ["plot", "whole", "whole", "--x", "aspect_ratio", "--fit", "0.1..2"];
+    assert_eq!(scratch.granular(&two).expect(0).out, "whole/runout.svg, whole/runout.png\n");
+    let figure = fs::read_to_string(scratch.path("whole/runout.svg")).unwrap();
+    assert!(figure.contains("whole: fitted ") && figure.contains("means over up to 2 runs"), "{figure}");
+    scratch
+        .granular(&["plot", "whole", "--fit", "2..1"])
+        .expect(2)
+        .says(&["the smaller first, such as 4..10"]);
     let wrong: &[(&[&str], &[&str])] = &[
+        (&["--fit", "1..2"], &["--fit: `this sweep` has no three points in that range"]),
         (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
         (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout, "]),
         (&["--x", "gravity"], &["--x: `gravity` is `[0, -9.81]` in a run"]),
