@@ -168,16 +168,15 @@ mod tests {
 
     #[test]
     fn the_packing_fills_the_box_and_hardly_overlaps() {
-        let spheres = loose(500);
+        let spheres = loose(4000);
         let edge = edge(spheres.iter().map(|sphere| sphere.radius));
-        // Walls take room, so that a box as small as this one may end its rounds before `OVERLAP`.
-        let deepest = 0.01 * 0.5 * (DIAMETERS[0] + DIAMETERS[1]);
+        let deepest = OVERLAP * 0.5 * (DIAMETERS[0] + DIAMETERS[1]);
         for (k, a) in spheres.iter().enumerate() {
             let to_wall = a.position.min(DVec3::splat(edge) - a.position).min_element();
             assert!(to_wall > a.radius - deepest, "{} deep of {deepest}", a.radius - to_wall);
             for b in &spheres[..k] {
                 let overlap = a.radius + b.radius - (a.position - b.position).length();
-                assert!(overlap < deepest, "{overlap} deep");
+                assert!(overlap < deepest, "{overlap} deep of {deepest}");
             }
         }
         assert!((step() - 0.65e-6).abs() < 0.01e-6, "{}", step());
