@@ -23,7 +23,7 @@ pub struct Vertex {
 
 /// What the sweep finds. Edge `e` has two half-edges, `2 e` and `2 e + 1`, one for each site, with
 /// the site at the left of its direction.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Topology {
     pub(crate) vertices: Vec<Vertex>,
     /// Site of each half-edge.
@@ -43,7 +43,14 @@ struct Sweep<'a> {
 
 /// The diagram of sites that come in the order of [`Site::order`].
 pub(crate) fn sweep(sites: &[Site]) -> Topology {
-    let out = Topology { hidden_by: vec![NONE; sites.len()], ..Topology::default() };
+    // Euler: at most 2 n vertices, 3 n edges.
+    let (vertices, halves) = (2 * sites.len(), 6 * sites.len());
+    let out = Topology {
+        vertices: Vec::with_capacity(vertices),
+        site: Vec::with_capacity(halves),
+        target: Vec::with_capacity(halves),
+        hidden_by: vec![NONE; sites.len()],
+    };
     let mut sweep = Sweep { sites, beach: Beach::new(), queue: Queue::new(), out };
     let level = sweep.first_row();
     for site in level..sites.len() {
