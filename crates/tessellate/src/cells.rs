@@ -283,6 +283,11 @@ impl<'a> Cells<'a> {
         visit(from, last.point);
     }
 
+    /// Bytes of memory that areas and pieces of edges hold.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.areas[..]) + size_of_val(&self.pieces[..])
+    }
+
     /// The domain.
     pub fn domain(&self) -> &Domain {
         self.domain

@@ -32,8 +32,14 @@ pub struct Bulk {
 ///
 /// The mean is that of the cells that count, so it is found by repetition, from the middle cell on. `None` if no cell has an area.
 pub fn bulk_density(radii: &[f64], areas: &[f64], threshold: f64) -> Option<Bulk> {
-    let cells = radii.iter().zip(areas).filter(|&(&radius, &area)| area > 0.0 && radius > 0.0);
-    let mut cells: Vec<(f64, f64)> = cells.map(|(radius, &area)| (PI * radius * radius, area)).collect();
+    let disks: Vec<f64> = radii.iter().map(|radius| PI * radius * radius).collect();
+    bulk_of(&disks, areas, threshold)
+}
+
+/// The same for grains of any shape: `solids` are their areas or volumes, `cells` those of their cells.
+pub fn bulk_of(solids: &[f64], cells: &[f64], threshold: f64) -> Option<Bulk> {
+    let cells = solids.iter().copied().zip(cells.iter().copied());
+    let mut cells: Vec<(f64, f64)> = cells.filter(|&(solid, cell)| cell > 0.0 && solid > 0.0).collect();
     // From compact to loose; what counts is always a beginning of this list.
     cells.sort_unstable_by(|a, b| (a.1 / a.0).total_cmp(&(b.1 / b.0)));
     // Far cells are boundless but for the domain: the middle one is where the mean starts.

@@ -54,6 +54,7 @@
 //! |---|---|---|
 //! | [`Diagram::new`] | additively weighted, disks of any size | \[Fortune1987, section 4\] |
 //! | [`Diagram::of_points`] | ordinary Voronoi diagram; its dual is a Delaunay triangulation | \[Fortune1987\] |
+//! | [`periodic_areas`] | areas in a plane that repeats along two edges | |
 //! | [`power_cells`] | power diagram of spheres in a box | \[Aurenhammer1987\] |
 //! | [`bulk_density`] | density without the cells of the free surface | \[Kumar2014, section 3.5.7\] |
 //!
@@ -77,6 +78,7 @@ mod domain;
 mod dyadic;
 mod error;
 mod locate;
+mod periodic;
 mod pieces;
 mod power;
 mod predicates;
@@ -86,10 +88,11 @@ mod sweep;
 
 pub use cells::{Cells, Side};
 pub use curve::Curve;
-pub use density::{Bulk, FREE_SURFACE, bulk_density, local_densities};
+pub use density::{Bulk, FREE_SURFACE, bulk_density, bulk_of, local_densities};
 pub use diagram::{Diagram, Edge};
 pub use domain::Domain;
 pub use error::TessellationError;
 pub use locate::encloses;
+pub use periodic::periodic_areas;
 pub use power::{PowerCell, power_cells};
 pub use sweep::Vertex;

@@ -2,7 +2,7 @@
 
 use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
-use granular::bench::{self, Precision, lattice, speed};
+use granular::bench::{self, Precision, lattice, speed, tessellate};
 use granular::failure::Failure;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub(super) enum Case {
     Hertz,
     /// Run-out of a column over stiffness and step; takes minutes.
     Column,
+    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid; takes seconds.
+    Cells,
     /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
     TaylorGreen,
     /// Lid-driven cavity over the same; takes one to two minutes.
@@ -51,12 +53,15 @@ pub(super) enum Solver {
     Dem,
     /// Lattice Boltzmann method; takes 2 GB of memory.
     Lbm,
+    /// Weighted Voronoi diagrams, on one thread; takes half a minute.
+    Tessellate,
 }
 
 #[derive(Args, Debug)]
 pub(super) struct Speed {
-    /// Numbers of grains; fluids have boxes of their own.
-    #[arg(long, value_delimiter = ',', default_value = "3000,13000,100000")]
+    /// Numbers of grains or sites; fluids have boxes of their own. By default 3000, 13000 and 100000 grains, 1000 to
+    /// 1000000 sites.
+    #[arg(long, value_delimiter = ',')]
     sizes: Vec<usize>,
     /// Numbers of threads, each in a pool of its own.
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
@@ -80,6 +85,7 @@ impl Bench {
                     Case::Restitution => Precision::Restitution,
                     Case::Hertz => Precision::Hertz,
                     Case::Column => Precision::Column,
+                    Case::Cells => Precision::Cells,
                     Case::TaylorGreen => Precision::TaylorGreen,
                     Case::Cavity => Precision::Cavity,
                     Case::SchaeferTurek => Precision::SchaeferTurek,
@@ -92,11 +98,20 @@ impl Bench {
             }
             Self::Speed { solver, flags } => {
                 let Speed { sizes, pools: threads, repeats, state, write_state } = flags;
+                let or = |sizes: Vec<usize>, default: &[usize]| {
+                    if sizes.is_empty() { default.to_vec() } else { sizes }
+                };
+                if let Solver::Tessellate = solver {
+                    let rates = tessellate::tessellate(&or(sizes, &tessellate::SIZES), repeats)?;
+                    show(common, &json!(rates), || tessellate::table(&rates));
+                    return Ok(());
+                }
                 let speeds = match solver {
                     Solver::Dem => {
+                        let sizes = or(sizes, &[3_000, 13_000, 100_000]);
                         speed::dem(&speed::Request { sizes, threads, repeats, state, write_state })?
                     }
-                    Solver::Lbm => lattice::lbm(&lattice::Request { threads, repeats })?,
+                    Solver::Lbm | Solver::Tessellate => lattice::lbm(&lattice::Request { threads, repeats })?,
                 };
                 show(common, &json!(speeds), || speed::table(&speeds));
             }
