@@ -24,8 +24,11 @@ const CELL_VOLUME: &str = "cell_volume";
 const CELL_STRESS: &str = "cell_stress";
 const IN_BULK: &str = "in_bulk";
 
+/// Name of a component of stress, and how it is taken.
+type Component = (&'static str, fn(&SymmetricTensor) -> f64);
+
 /// Components of the stress of the bulk.
-const STRESSES: [(&str, fn(&SymmetricTensor) -> f64); 6] = [
+const STRESSES: [Component; 6] = [
     ("bulk_stress_xx", |s| s.xx),
     ("bulk_stress_yy", |s| s.yy),
     ("bulk_stress_xy", |s| s.xy),

@@ -60,8 +60,8 @@ fn panel(scene: &Scene, frame: &Points) -> Result<GrainPanel, Failure> {
     let diagram = Diagram::new(&centres, &radii)?;
     let domain = Domain::rectangle(low, high)?;
     let cells = diagram.cells(&domain);
-    for site in 0..centres.len() {
-        let value = if in_bulk.get(site) == Some(&1.0) { density[site] } else { f64::NAN };
+    for (site, (&density, &in_bulk)) in density.iter().zip(&in_bulk).enumerate() {
+        let value = if in_bulk > 0.0 { density } else { f64::NAN };
         for sides in cells.boundary(site) {
             let points = sides.iter().flat_map(|side| {
                 let parts = if side.is_straight() { 1 } else { CHORDS };

@@ -8,7 +8,7 @@ use super::row::{Measure, Rows, Tier};
 use crate::failure::Failure;
 use crate::voronoi;
 use granular_core::{D2, Dim, GrainMotion, Numbers, Provides, Simulation};
-use granular_dem::{Dem, Grain, Partner};
+use granular_dem::{Dem, Partner};
 use granular_tessellate::FREE_SURFACE;
 use granular_validation_data::PACKING_DENSITY;
 use std::any::Any;
@@ -27,7 +27,7 @@ struct Seen {
     densities: [f64; THRESHOLDS.len()],
     /// Share of the grains that count at the default threshold.
     counted: f64,
-    /// Vertical stress of all cells times their area, over what holds at rest.
+    /// Vertical stress of all cells times their area, over what it should be.
     virial: f64,
 }
 
@@ -53,16 +53,17 @@ impl Seen {
 
 pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let (grains, seeds): (usize, &[u64]) =
-        if effort == Effort::Full { (3000, &[1, 2, 3, 4]) } else { (300, &[1, 2]) };
+        if effort == Effort::Full { (3000, &[1, 2, 3, 4]) } else { (300, &[1]) };
     let seen = parallel::each(seeds, |&seed| {
         let column = Collapse::of(grains).seed(seed).set(format!("sample.aspect_ratio={ASPECT_RATIO}"));
         column.watch(TIME, look)
     })?;
     let mean = |of: &dyn Fn(&[Seen; 2]) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
-    let metric = format!("{grains} disks at rest: stress of cells times area, over weights and wall forces");
-    let virial = mean(&|seen| seen[0].virial);
-    rows.add(Measure::relative(Tier::Identity, metric, virial, 1.0, 0.01).note("mean over seeds"));
     for (state, name) in [(0, "at rest"), (1, "at 3 sqrt(H/g)")] {
+        let metric = format!("{grains} disks {name}: stress of cells times area, over forces times heights");
+        let virials = seen.iter().map(|seen| seen[state].virial);
+        let worst = virials.max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs())).unwrap_or(f64::NAN);
+        rows.add(Measure::absolute(Tier::Identity, metric, worst, 1.0, 1e-9).note("worst of the seeds"));
         let metric = format!("{grains} disks {name}: change of the density for thresholds from 1.5 to 3");
         let change = mean(&|seen| seen[state].change());
         let curves: Vec<String> = seen.iter().map(|seen| seen[state].curve()).collect();
@@ -102,14 +103,13 @@ fn look(simulation: &Simulation) -> Result<Seen, Failure> {
     })
 }
 
-/// What the vertical stress of all cells times their area is at rest \[N m/m\]: weights times heights, less the forces of walls
-/// times the heights at which they act.
+/// What the vertical stress of all cells times their area is \[N m/m\]: forces of contacts on grains times the heights of their
+/// centres, less the forces of walls times the heights at which they act.
 fn expected(dem: &Dem<D2>) -> f64 {
-    let weight = |grain: &Grain<D2>| {
-        -dem.gravity().y * dem.materials().get(grain.material).density * D2::ball_volume(grain.radius)
-    };
-    let mut sum: f64 = dem.grains().map(|(_, grain)| weight(&grain) * grain.position.y).sum();
     let grains = Provides::<GrainMotion<D2>>::view(dem);
+    let forces = dem.contact_forces();
+    let mut sum: f64 =
+        grains.iter().zip(&forces).map(|((_, motion, _), force)| force.y * motion.position.y).sum();
     dem.visit_contacts(&mut |contact| {
         if let Partner::Wall(_) = contact.partner {
             let arm = contact.normal * (grains.radius(contact.first) - 0.5 * contact.overlap);
