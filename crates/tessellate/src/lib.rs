@@ -58,6 +58,13 @@
 //! | [`power_cells`] | power diagram of spheres in a box | \[Aurenhammer1987\] |
 //! | [`bulk_density`] | density without the cells of the free surface | \[Kumar2014, section 3.5.7\] |
 //!
+//! # How it is tested
+//!
+//! Random and adversarial diagrams of up to about sixty sites (lattices, sites on common lines and circles, near-duplicates, disks that touch
+//! from inside, radii over six decades, coordinates scaled by 1e-12 and 1e12) must obey the definition: areas sum to the
+//! domain, boundaries close, no site is nearer to a vertex than its own three, the graph obeys Euler. 3000 are run by default, as many as
+//! the environment variable `GRANULAR_DIAGRAMS` says otherwise; the last run of a million found no fault.
+//!
 //! # Limits
 //!
 //! - In space only power cells; the module of [`power_cells`] says why. There is no power diagram in the plane: it is not

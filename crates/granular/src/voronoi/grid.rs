@@ -9,6 +9,9 @@ use granular_tessellate::{Cells, Diagram, TessellationError, bulk_of};
 /// Straight parts by which a curved side is drawn: they miss 1/36 of what one chord misses.
 const CHORDS: u32 = 6;
 
+/// Share of a cell of the grid that must be covered.
+const LEAST: f64 = 1e-6;
+
 /// What can be shown on a grid: of disks without a periodic cell.
 pub(crate) fn shown_on_grid(solver: &dyn Solver) -> Vec<Shown> {
     match Packing::of(solver) {
@@ -78,7 +81,9 @@ fn shared(grid: &CoarseGrid<D2>, cells: &Cells<'_>, solids: &[f64], free_surface
             }
         }
     }
-    solid.iter().zip(&area).map(|(solid, &area)| if area > 0.0 { solid / area } else { f64::NAN }).collect()
+    // Less is rounding at a wall.
+    let least = LEAST * spacing * spacing;
+    solid.iter().zip(&area).map(|(solid, &area)| if area > least { solid / area } else { f64::NAN }).collect()
 }
 
 /// Area of a polygon within the unit square at a corner.

@@ -159,11 +159,15 @@ impl GrainFigure {
         drawing.rectangle(area, None, Some(Stroke::plain(Colour::GRID, 0.8)));
         layout.draw_label(drawing, index, &panel.label);
         let [low, high] = self.colours();
+        // Of grains that are small in the figure, lines of one width would hide the greys.
+        let fine = |radius: f64| (0.05 * radius).clamp(0.04, 0.6);
+        let mean = panel.grains.iter().map(|grain| grain.radius * layout.scale).sum::<f64>();
+        let width = fine(mean / panel.grains.len().max(1) as f64);
         for cell in &panel.cells {
             let spots: Vec<Spot> = cell.outline.iter().map(|&corner| place(corner)).collect();
             let share = (cell.value - low) / (high - low);
             let fill = share.is_finite().then(|| Fill::solid(Colour::of_density(share)));
-            drawing.polygon(&spots, fill, Some(Stroke::plain(Colour::FRAME, 0.3)));
+            drawing.polygon(&spots, fill, Some(Stroke::plain(Colour::FRAME, width)));
         }
         for grain in &panel.grains {
             let radius = grain.radius * layout.scale;
@@ -171,7 +175,7 @@ impl GrainFigure {
                 continue;
             }
             if self.has_cells() {
-                drawing.ring(place(grain.center), radius, Stroke::plain(Colour::of_series(1), 0.3));
+                drawing.ring(place(grain.center), radius, Stroke::plain(Colour::of_series(1), fine(radius)));
                 continue;
             }
             let share = (grain.value - low) / (high - low);
