@@ -149,4 +149,8 @@ fn cells_are_made_at_output_times_and_only_if_asked_for() {
     // At steps 0, 25, 50, 75 and 100, whatever number of probes.
     assert_eq!(tessellations(&scene(", \"bulk_density\", \"bulk_grains\"", "")), 5);
     assert_eq!(tessellations(&scene("", ", \"local_density\", \"cell_stress\"")), 3);
+    let tracks =
+        "[(every: Steps(50), write: Tracks(path: \"c.csv\", grains: Every(9), fields: [\"local_density\"]))]";
+    // One more for the head of the table.
+    assert_eq!(tessellations(tracks), 4);
 }
