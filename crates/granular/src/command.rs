@@ -322,7 +322,8 @@ fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
 fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
     let (_, model) = check::read(&SceneText::read(path)?)?;
     let solver = model.simulation.solver();
-    let mut list: Vec<_> = solver.shown().into_iter().map(|s| (format!("{:?}", s.kind), s)).collect();
+    let all = granular::model::all_shown(solver);
+    let mut list: Vec<_> = all.into_iter().map(|s| (format!("{:?}", s.kind), s)).collect();
     list.extend(granular::model::shown_on_grids(solver).into_iter().map(|s| ("Grid".to_owned(), s)));
     let rows: Vec<Value> = list
         .iter()

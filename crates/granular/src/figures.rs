@@ -5,6 +5,7 @@ mod flow;
 mod fluid;
 mod map;
 pub(crate) mod spectrum;
+mod voronoi;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;
@@ -59,6 +60,11 @@ pub fn draw(
             FigureSpec::Flow { fields, color, stage, times, .. } => {
                 let units = units(scene, record(records, stage)?, column);
                 flow::grains(scene, folder, (fields.as_str(), color.as_str()), times, units)?.figure()
+            }
+            FigureSpec::Cells { fields, range, stage, times, .. } => {
+                let units = units(scene, record(records, stage)?, column);
+                let range = range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
+                voronoi::cells(scene, folder, (fields, range), times, units)?.figure()
             }
             FigureSpec::ForceChains { contacts, stage, time, .. } => {
                 let units = units(scene, record(records, stage)?, column);
