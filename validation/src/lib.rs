@@ -35,3 +35,7 @@ pub const CYLINDER: &str = include_str!("../cylinder/reference.csv");
 pub const HERTZ_IMPACT: &str = include_str!("../hertz_impact/reference.csv");
 /// Materials and speeds of the impacts of Chung and Ooi.
 pub const CHUNG_OOI: &str = include_str!("../chung_ooi/reference.csv");
+/// Packing density of a collapsing column.
+pub const PACKING_DENSITY: &str = include_str!("../packing_density/reference.csv");
+/// Numbers of weighted Voronoi diagrams with closed forms.
+pub const TESSELLATION: &str = include_str!("../tessellation/reference.csv");

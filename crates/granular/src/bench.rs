@@ -2,17 +2,20 @@
 //!
 //! [`precision`] studies measure how the error of a case falls with what a run costs; they give a
 //! [`Study`] with its Pareto front and fitted orders. [`speed`] measures how many grain-steps a
-//! second grains take, [`lattice`] how many cell updates a fluid.
+//! second grains take, [`lattice`] how many cell updates a fluid, [`tessellate`] how many cells of Voronoi diagrams.
 
+mod cells;
 mod column;
 mod figure;
 mod flows;
 mod hertz;
 pub mod lattice;
 mod restitution;
+mod settling;
 pub mod speed;
 mod state;
 mod study;
+pub mod tessellate;
 mod triad;
 
 pub use study::{Point, Study};
@@ -29,6 +32,8 @@ pub enum Precision {
     Hertz,
     /// Run-out of a column over stiffness and step, as a mean over seeds.
     Column,
+    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid.
+    Cells,
     /// Decaying vortices over cells, Mach number, operator and storage: a minute.
     TaylorGreen,
     /// A lid-driven cavity over the same: one to two minutes.
@@ -44,6 +49,7 @@ impl Precision {
             Self::Restitution => "restitution",
             Self::Hertz => "hertz",
             Self::Column => "column",
+            Self::Cells => "cells",
             Self::TaylorGreen => "taylor-green",
             Self::Cavity => "cavity",
             Self::SchaeferTurek => "schaefer-turek",
@@ -60,6 +66,7 @@ pub fn precision(case: Precision) -> Result<Study, Failure> {
         Precision::Restitution => restitution::study(),
         Precision::Hertz => hertz::study(),
         Precision::Column => column::study(),
+        Precision::Cells => cells::study(),
         Precision::TaylorGreen => flows::taylor_green(),
         Precision::Cavity => flows::cavity(),
         Precision::SchaeferTurek => flows::schaefer_turek(),

@@ -5,7 +5,7 @@ use crate::model::{self, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, SolverSpec};
 use crate::scene_file::{SceneProblem, SceneText};
-use granular_core::{Limits, Memory, Shown, StepRule};
+use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::Path;
@@ -46,11 +46,6 @@ pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
     let model =
         model::build(&scene).map_err(|list| Failure::Scene(list.into_iter().map(located).collect()))?;
     Ok((scene, model))
-}
-
-/// All that outputs of a model can show.
-pub fn shown(model: &Model) -> Vec<Shown> {
-    crate::probes::shown(model.simulation.solver())
 }
 
 /// The step of each stage: its own, that of the solver, or the recommended one \[s\].

@@ -6,6 +6,7 @@ mod fluid;
 mod map;
 mod radial;
 pub(crate) mod spectrum;
+mod voronoi;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;
@@ -66,6 +67,11 @@ pub fn draw(
             FigureSpec::Flow { fields, color, stage, times, .. } => {
                 let units = units(scene, record(records, stage)?, column);
                 flow::grains(scene, folder, (fields.as_str(), color.as_str()), times, units)?.figure()
+            }
+            FigureSpec::Cells { fields, range, stage, times, .. } => {
+                let units = units(scene, record(records, stage)?, column);
+                let range = range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
+                voronoi::cells(scene, folder, (fields, range), times, units)?.figure()
             }
             FigureSpec::ForceChains { contacts, stage, time, .. } => {
                 let units = units(scene, record(records, stage)?, column);

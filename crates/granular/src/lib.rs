@@ -17,7 +17,9 @@ pub mod run;
 mod sample_file;
 pub mod scene;
 pub mod scene_file;
+pub mod sweep;
 pub mod validate;
+mod voronoi;
 
 /// Scenes to start from: name and text. The first line of each is a comment that says what it is.
 pub const TEMPLATES: &[(&str, &str)] = &[

@@ -10,7 +10,7 @@ mod sample;
 mod walls;
 
 pub(crate) use grains::NamedMaterials;
-pub use outputs::shown_on_grids;
+pub use outputs::{all_shown, shown_on_grids};
 
 use crate::failure::Failure;
 use crate::scene::{Dimension, End, Scene, SolverSpec};

@@ -11,8 +11,10 @@ pub(crate) use profile::Line;
 pub(crate) use source::Grid;
 
 use crate::failure::Failure;
+use crate::model;
 use crate::probes;
 use crate::scene::{EverySpec, Output, Writer};
+use crate::voronoi;
 use granular_core::{
     Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, Shown, ShownAs, Simulation,
     SnapshotError,
@@ -33,7 +35,7 @@ pub(crate) fn of_output(
     simulation: &Simulation,
     fresh: bool,
 ) -> Result<Scheduled, Failure> {
-    let shown = &probes::shown(simulation.solver());
+    let shown = model::all_shown(simulation.solver());
     let every = match output.every {
         EverySpec::Time(time) => Every::Time(time.value()),
         EverySpec::Steps(steps) => Every::Steps(steps),
@@ -42,9 +44,12 @@ pub(crate) fn of_output(
     if let Some(parent) = path.parent() {
         std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
     }
-    let source = Source::of(output.write.grid(), simulation);
+    let free_surface = output.write.free_surface();
+    let source = Source::of(output.write.grid(), free_surface, simulation);
     let observer: Box<dyn Observer> = match &output.write {
-        Writer::Table { probes, .. } => Box::new(TableObserver::new(path, probes, shown, fresh)?),
+        Writer::Table { probes, .. } => {
+            Box::new(TableObserver::new(path, probes, &shown, free_surface, fresh)?)
+        }
         Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, source, fields, false, fresh)?),
         Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, source, fields, true, fresh)?),
         Writer::Profile { from, to, points, fields, .. } => {
@@ -71,17 +76,24 @@ pub(crate) fn of_output(
 struct TableObserver {
     series: Series,
     probes: Vec<String>,
+    free_surface: f64,
 }
 
 impl TableObserver {
-    fn new(path: PathBuf, probes: &[String], shown: &[Shown], fresh: bool) -> Result<Self, Failure> {
+    fn new(
+        path: PathBuf,
+        probes: &[String],
+        shown: &[Shown],
+        free_surface: f64,
+        fresh: bool,
+    ) -> Result<Self, Failure> {
         let unit = |name: &str| {
             let found = shown.iter().find(|s| s.kind == ShownAs::Number && s.name == name);
             found.map_or("1", |shown| shown.unit).to_owned()
         };
         let mut columns = vec![("time".to_owned(), "s".to_owned())];
         columns.extend(probes.iter().map(|name| (name.clone(), unit(name))));
-        Ok(Self { series: Series::new(path, columns, fresh)?, probes: probes.to_vec() })
+        Ok(Self { series: Series::new(path, columns, fresh)?, probes: probes.to_vec(), free_surface })
     }
 }
 
@@ -89,6 +101,7 @@ impl Observer for TableObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let mut numbers = Numbers::wanting(self.probes.iter().map(String::as_str));
         probes::show(simulation.solver(), &mut numbers);
+        voronoi::show(simulation.solver(), self.free_surface, &mut numbers);
         let mut row = vec![simulation.clock().time()];
         row.extend(self.probes.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
         self.series.row(&row)?;

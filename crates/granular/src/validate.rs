@@ -26,6 +26,7 @@ mod incline;
 mod laws;
 mod oblique;
 mod packing;
+mod packing_density;
 pub(crate) mod parallel;
 mod plane;
 mod reference;
@@ -36,6 +37,7 @@ pub mod stability;
 mod stages;
 pub(crate) mod strike;
 mod table;
+mod tessellation;
 
 pub use row::{Row, Tier};
 pub use table::table;
@@ -90,6 +92,12 @@ pub const CASES: &[Case] = &[
     Case { name: "moving_walls", about: "pistons, belts, lids under a force", run: boundaries::moving_walls },
     Case { name: "flat_surface", about: "a flat strip of parts is a plane", run: boundaries::flat_surface },
     Case { name: "energy_balance", about: "energy balance of a collapse", run: conservation::energy },
+    Case { name: "tessellation", about: "cells of weighted Voronoi diagrams", run: tessellation::run },
+    Case {
+        name: "packing_density",
+        about: "density of the bulk from Voronoi cells, over the threshold of the free surface",
+        run: packing_density::run,
+    },
     Case { name: "coarse_graining", about: "continuum fields from grains", run: coarse::run },
     Case {
         name: "poiseuille",

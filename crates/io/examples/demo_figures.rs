@@ -90,7 +90,7 @@ fn collapse() -> GrainFigure {
         label: label.to_owned(),
         grains: heap(spread),
         walls: vec![[[-1e-3, 0.0], [0.27, 0.0]], [[-1e-3, 0.0], [-1e-3, 0.11]]],
-        chains: vec![],
+        ..GrainPanel::default()
     };
     let panels = vec![panel(1.0, "t = 0"), panel(1.5, "t = 1.0 τ"), panel(2.2, "t = 3.0 τ")];
     GrainFigure::new("Collapse of a column of 3000 disks", "speed [m/s]", panels)
@@ -114,6 +114,7 @@ fn chains() -> GrainFigure {
         grains: grains.clone(),
         walls: vec![[[-1e-3, 0.0], [0.051, 0.0]]],
         chains: chains.clone(),
+        ..GrainPanel::default()
     };
     let panels = vec![panel("(a) frictionless"), panel("(b) µ = 0.5")];
     let force = "normal force [N]".to_owned();

@@ -28,7 +28,7 @@ mod scale;
 mod svg;
 
 pub use chart::{Axis, Chart, Scale, Series, Style};
-pub use grains::{Chain, Grain, GrainFigure, GrainPanel};
+pub use grains::{Chain, Grain, GrainFigure, GrainPanel, Patch};
 pub use map::{MapFigure, MapPanel};
 pub use panels::Panels;
 

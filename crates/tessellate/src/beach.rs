@@ -1,5 +1,8 @@
 //! The beach line: arcs from left to right, in a search tree (a treap with fixed priorities) whose
 //! nodes are also a list.
+//!
+//! A search starts at the arc that was last made near the place, and takes the tree if a few steps along the list do
+//! not end it.
 
 /// No arc, vertex, edge or event.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -26,7 +29,26 @@ pub(crate) struct Beach {
     free: Vec<u32>,
     root: u32,
     made: u32,
+    hints: Hints,
 }
+
+/// Arcs that were made last in equal intervals of `x`, with their sites; they may be gone.
+#[derive(Debug)]
+struct Hints {
+    arcs: Vec<[u32; 2]>,
+    begin: f64,
+    density: f64,
+}
+
+impl Hints {
+    fn place(&self, x: f64) -> usize {
+        // The conversion saturates, below at 0.
+        (((x - self.begin) * self.density) as usize).min(self.arcs.len() - 1)
+    }
+}
+
+/// Steps along the list before the tree is taken.
+const WALK: usize = 12;
 
 /// Priorities that look random and are the same in every run.
 fn scramble(number: u32) -> u32 {
@@ -37,8 +59,12 @@ fn scramble(number: u32) -> u32 {
 }
 
 impl Beach {
-    pub(crate) fn new() -> Self {
-        Self { arcs: Vec::new(), free: Vec::new(), root: NONE, made: 0 }
+    /// A beach line for sites between two places, with so many hints.
+    pub(crate) fn new([begin, end]: [f64; 2], count: usize) -> Self {
+        let density = count as f64 / (end - begin);
+        let density = if density.is_finite() { density } else { 0.0 };
+        let hints = Hints { arcs: vec![[NONE; 2]; count + 1], begin, density };
+        Self { arcs: Vec::new(), free: Vec::new(), root: NONE, made: 0, hints }
     }
 
     pub(crate) fn arc(&self, arc: u32) -> &Arc {
@@ -49,16 +75,64 @@ impl Beach {
         &mut self.arcs[arc as usize]
     }
 
-    /// The first arc whose right end is not passed; `beyond(arc, next)` tells whether it is.
-    pub(crate) fn find(&self, mut beyond: impl FnMut(&Arc, &Arc) -> bool) -> u32 {
+    /// The first arc whose right end is not passed at `x`; `beyond(arc, next)` tells whether it is.
+    #[inline(always)]
+    pub(crate) fn find(&self, x: f64, beyond: impl Fn(&Arc, &Arc) -> bool) -> u32 {
+        let passed = |arc: u32| {
+            let arc = self.arc(arc);
+            arc.next != NONE && beyond(arc, self.arc(arc.next))
+        };
+        let guess = self.guess(x);
+        guess.and_then(|arc| self.walk(arc, passed)).unwrap_or_else(|| self.descend(passed))
+    }
+
+    /// An arc that was made near a place and is still there.
+    #[inline(always)]
+    fn guess(&self, x: f64) -> Option<u32> {
+        let place = self.hints.place(x);
+        let near = [0, 1, usize::MAX, 2, usize::MAX - 1].map(|step| place.wrapping_add(step));
+        let made = near.into_iter().filter_map(|place| self.hints.arcs.get(place));
+        let mut there = made.filter(|[arc, site]| *arc != NONE && self.arc(*arc).site == *site);
+        there.next().map(|[arc, _]| *arc)
+    }
+
+    /// Where searches near `x` may start.
+    pub(crate) fn hint(&mut self, x: f64, arc: u32) {
+        let place = self.hints.place(x);
+        self.hints.arcs[place] = [arc, self.arc(arc).site];
+    }
+
+    /// The arc if it is not far from a first guess.
+    #[inline(always)]
+    fn walk(&self, mut arc: u32, passed: impl Fn(u32) -> bool) -> Option<u32> {
+        if passed(arc) {
+            for _ in 0..WALK {
+                arc = self.arc(arc).next;
+                if !passed(arc) {
+                    return Some(arc);
+                }
+            }
+        } else {
+            for _ in 0..WALK {
+                let previous = self.arc(arc).previous;
+                if previous == NONE || passed(previous) {
+                    return Some(arc);
+                }
+                arc = previous;
+            }
+        }
+        None
+    }
+
+    #[inline(never)]
+    fn descend(&self, passed: impl Fn(u32) -> bool) -> u32 {
         let (mut node, mut found) = (self.root, NONE);
         while node != NONE {
-            let arc = self.arc(node);
-            let right = arc.next != NONE && beyond(arc, self.arc(arc.next));
+            let right = passed(node);
             if !right {
                 found = node;
             }
-            node = arc.below[usize::from(right)];
+            node = self.arc(node).below[usize::from(right)];
         }
         found
     }
@@ -127,6 +201,7 @@ impl Beach {
         if next != NONE {
             self.arc_mut(next).previous = previous;
         }
+        self.arc_mut(arc).site = NONE;
         self.free.push(arc);
     }
 

@@ -5,6 +5,7 @@ use crate::diagram::Diagram;
 use crate::domain::Domain;
 use crate::pieces::{Crossing, End, Piece, pieces};
 use granular_core::glam::DVec2;
+use std::sync::OnceLock;
 
 /// The cells of a diagram within a domain.
 #[derive(Clone, Debug)]
@@ -15,7 +16,13 @@ pub struct Cells<'a> {
     pieces: Vec<Piece>,
     crossings: Vec<Crossing>,
     walls: Vec<Wall>,
-    /// Pieces of each cell (number and side) and stretches of wall, from `starts[i]` to `starts[i + 1]`.
+    /// What bounds each cell, listed when it is first asked for: areas do not need it.
+    bounds: OnceLock<Bounds>,
+}
+
+/// Pieces of each cell and stretches of wall, from `starts[i]` to `starts[i + 1]`.
+#[derive(Clone, Debug)]
+struct Bounds {
     starts: Vec<u32>,
     parts: Vec<Part>,
 }
@@ -56,6 +63,10 @@ impl Side {
     /// Whether it is straight, within a domain or between disks of one size.
     pub fn is_straight(&self) -> bool {
         self.curve.is_none_or(|(curve, _)| curve.is_straight())
+    }
+
+    pub(crate) fn curve(&self) -> Option<&Curve> {
+        self.curve.as_ref().map(|(curve, _)| curve)
     }
 
     /// The point after a share of the side, 0 at its begin and 1 at its end.
@@ -110,11 +121,9 @@ impl<'a> Cells<'a> {
             pieces,
             crossings,
             walls: Vec::new(),
-            starts: Vec::new(),
-            parts: Vec::new(),
+            bounds: OnceLock::new(),
         };
         cells.lay_walls();
-        cells.list_parts();
         cells.measure();
         cells
     }
@@ -196,7 +205,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Lists what bounds each cell.
-    fn list_parts(&mut self) {
+    fn list_bounds(&self) -> Bounds {
         let owners = |piece: &Piece| self.diagram.owners(piece.edge);
         let mut starts = vec![0_u32; self.diagram.len() + 1];
         let sites = self.pieces.iter().flat_map(owners).chain(self.walls.iter().map(|wall| wall.site));
@@ -220,7 +229,12 @@ impl<'a> Cells<'a> {
         for (number, wall) in (0..).zip(&self.walls) {
             put(wall.site, Part::Wall(number));
         }
-        (self.starts, self.parts) = (starts, parts);
+        Bounds { starts, parts }
+    }
+
+    fn parts(&self, site: usize) -> &[Part] {
+        let Bounds { starts, parts } = self.bounds.get_or_init(|| self.list_bounds());
+        &parts[starts[site] as usize..starts[site + 1] as usize]
     }
 
     /// Areas: polygons of the corners, and what lies between them and the curves.
@@ -269,6 +283,11 @@ impl<'a> Cells<'a> {
         visit(from, last.point);
     }
 
+    /// Bytes of memory that areas and pieces of edges hold.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.areas[..]) + size_of_val(&self.pieces[..])
+    }
+
     /// The domain.
     pub fn domain(&self) -> &Domain {
         self.domain
@@ -282,7 +301,7 @@ impl<'a> Cells<'a> {
     /// The boundary of a cell as closed loops, each counter-clockwise. A cell cut by the domain may have several,
     /// one without a part in the domain has none.
     pub fn boundary(&self, site: usize) -> Vec<Vec<Side>> {
-        let mut parts = self.parts[self.starts[site] as usize..self.starts[site + 1] as usize].to_vec();
+        let mut parts = self.parts(site).to_vec();
         let mut loops = Vec::new();
         while let Some(part) = parts.pop() {
             let mut sides = Vec::new();
@@ -302,8 +321,8 @@ impl<'a> Cells<'a> {
 
     /// Sites whose cells adjoin that of `site` within the domain, in ascending order.
     pub fn neighbours(&self, site: usize) -> Vec<usize> {
-        let parts = &self.parts[self.starts[site] as usize..self.starts[site + 1] as usize];
-        let mut neighbours: Vec<usize> = parts
+        let mut neighbours: Vec<usize> = self
+            .parts(site)
             .iter()
             .filter_map(|part| match *part {
                 Part::Piece(piece, right) => Some(self.beyond(piece, right)),
@@ -317,8 +336,7 @@ impl<'a> Cells<'a> {
 
     /// Whether the cell reaches the boundary of the domain.
     pub fn at_boundary(&self, site: usize) -> bool {
-        let parts = &self.parts[self.starts[site] as usize..self.starts[site + 1] as usize];
-        parts.iter().any(|part| matches!(part, Part::Wall(_)))
+        self.parts(site).iter().any(|part| matches!(part, Part::Wall(_)))
     }
 
     /// The site beyond a piece.

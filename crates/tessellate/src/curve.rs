@@ -61,12 +61,12 @@ impl Curve {
             return 0.0;
         }
         let (first, last) = (self.sinh(from), self.sinh(to));
-        let delta = if first.abs().max(last.abs()) < FAR {
-            (last * (1.0 + first * first).sqrt() - first * (1.0 + last * last).sqrt()).asinh()
+        let beyond = if first.abs().max(last.abs()) < FAR {
+            minus_asinh(last * (1.0 + first * first).sqrt() - first * (1.0 + last * last).sqrt())
         } else {
-            last.asinh() - first.asinh()
+            sinh_minus(last.asinh() - first.asinh())
         };
-        -0.5 * self.a * self.b * sinh_minus(delta)
+        -0.5 * self.a * self.b * beyond
     }
 
     /// Coefficients of `p cosh + q sinh - r`, the distance of a point beyond a line.
@@ -77,6 +77,18 @@ impl Curve {
             r: (from - self.middle).dot(normal),
         }
     }
+}
+
+/// `s - asinh(s)`, also where both are nearly equal.
+fn minus_asinh(s: f64) -> f64 {
+    let square = s * s;
+    if square > 0.05 {
+        return s - (s.abs() + (1.0 + square).sqrt()).ln().copysign(s);
+    }
+    // Terms of asinh: each is minus this share of the one before, times the square.
+    let share = |k: f64| (2.0 * k - 1.0) * (2.0 * k - 1.0) / (2.0 * k * (2.0 * k + 1.0));
+    let series = (2..12).rev().fold(1.0, |sum, k| 1.0 - square * share(f64::from(k)) * sum);
+    s * square / 6.0 * series
 }
 
 /// `sinh(x) - x`, also where both are nearly equal.

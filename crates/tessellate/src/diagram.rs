@@ -121,6 +121,17 @@ impl Diagram {
         &self.topology.vertices
     }
 
+    /// Bytes of memory that the diagram holds.
+    pub fn bytes(&self) -> usize {
+        let Topology { vertices, site, target, hidden_by } = &self.topology;
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.radii[..])
+            + size_of_val(&vertices[..])
+            + size_of_val(&site[..])
+            + size_of_val(&target[..])
+            + size_of_val(&hidden_by[..])
+    }
+
     /// Number of edges.
     pub fn edge_count(&self) -> usize {
         self.topology.site.len() / 2

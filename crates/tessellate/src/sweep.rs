@@ -23,7 +23,7 @@ pub struct Vertex {
 
 /// What the sweep finds. Edge `e` has two half-edges, `2 e` and `2 e + 1`, one for each site, with
 /// the site at the left of its direction.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Topology {
     pub(crate) vertices: Vec<Vertex>,
     /// Site of each half-edge.
@@ -43,8 +43,16 @@ struct Sweep<'a> {
 
 /// The diagram of sites that come in the order of [`Site::order`].
 pub(crate) fn sweep(sites: &[Site]) -> Topology {
-    let out = Topology { hidden_by: vec![NONE; sites.len()], ..Topology::default() };
-    let mut sweep = Sweep { sites, beach: Beach::new(), queue: Queue::new(), out };
+    // Euler: at most 2 n vertices, 3 n edges.
+    let (vertices, halves) = (2 * sites.len(), 6 * sites.len());
+    let out = Topology {
+        vertices: Vec::with_capacity(vertices),
+        site: Vec::with_capacity(halves),
+        target: Vec::with_capacity(halves),
+        hidden_by: vec![NONE; sites.len()],
+    };
+    let queue = Queue::new([sites[0].low[0], sites[sites.len() - 1].low[0]], sites.len());
+    let mut sweep = Sweep { sites, beach: beach(sites), queue, out };
     let level = sweep.first_row();
     for site in level..sites.len() {
         while let Some(event) = sweep.due(Some(site)) {
@@ -56,6 +64,18 @@ pub(crate) fn sweep(sites: &[Site]) -> Topology {
         sweep.vanish(event);
     }
     sweep.out
+}
+
+/// An empty beach line, with about as many hints as it will have arcs.
+fn beach(sites: &[Site]) -> Beach {
+    let [mut begin, mut end] = [sites[0].x; 2];
+    for site in sites {
+        (begin, end) = (begin.min(site.x), end.max(site.x));
+    }
+    let (width, height) = (end - begin, sites[sites.len() - 1].low[0] - sites[0].low[0]);
+    let across = (sites.len() as f64 * width / height).sqrt().min(sites.len() as f64);
+    // Not a number becomes 0.
+    Beach::new([begin, end], across as usize)
 }
 
 impl Sweep<'_> {
@@ -104,7 +124,8 @@ impl Sweep<'_> {
 
     /// The event that comes before the line meets a site, if there is one.
     fn due(&mut self, site: Option<usize>) -> Option<u32> {
-        let event = self.queue.first(self.sites)?;
+        let height = site.map_or(f64::INFINITY, |site| self.sites[site].low[0]);
+        let event = self.queue.first(height, self.sites)?;
         let Some(site) = site else {
             return Some(event);
         };
@@ -128,9 +149,9 @@ impl Sweep<'_> {
             return;
         }
         let (sites, site) = (self.sites, &self.sites[index]);
-        let arc = self
-            .beach
-            .find(|arc, next| beyond_break(site, &sites[arc.site as usize], &sites[next.site as usize]));
+        let arc = self.beach.find(site.x, |arc, next| {
+            beyond_break(site, &sites[arc.site as usize], &sites[next.site as usize])
+        });
         let owner = self.beach.arc(arc).site;
         if nested(site, &sites[owner as usize]) {
             self.out.hidden_by[index] = owner;
@@ -141,6 +162,7 @@ impl Sweep<'_> {
         let outer = self.beach.arc(arc).half;
         let middle = self.beach.insert_after(arc, index as u32);
         let right = self.beach.insert_after(middle, owner);
+        self.beach.hint(site.x, middle);
         let half = self.edge(owner, index as u32);
         self.beach.arc_mut(arc).half = half;
         self.beach.arc_mut(middle).half = half + 1;
@@ -151,7 +173,7 @@ impl Sweep<'_> {
 
     /// An arc vanishes: its neighbours meet in a vertex.
     fn vanish(&mut self, event: u32) {
-        let Event { arc, sites: [left, middle, right], circle } = *self.queue.event(event);
+        let Event { arc, sites: [left, middle, right], circle, .. } = *self.queue.event(event);
         self.queue.pop(self.sites);
         let (position, distance) = circle.centre(&self.sites[middle as usize]);
         let vertex = self.out.vertices.len() as u32;
@@ -188,7 +210,7 @@ impl Sweep<'_> {
         if vanishes(left, middle, right) {
             let circle = Circle::new([left, middle, right]);
             let sites = [before, arc, after].map(|arc| self.beach.arc(arc).site);
-            let event = self.queue.push(Event { arc, sites, circle }, self.sites);
+            let event = self.queue.push(Event::new(arc, sites, circle), self.sites);
             self.beach.arc_mut(arc).event = event;
         }
     }

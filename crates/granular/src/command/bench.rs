@@ -2,7 +2,7 @@
 
 use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
-use granular::bench::{self, Precision, lattice, speed};
+use granular::bench::{self, Precision, lattice, speed, tessellate};
 use granular::failure::Failure;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub(super) enum Case {
     Hertz,
     /// Run-out of a column over stiffness and step; takes minutes.
     Column,
+    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid; takes seconds.
+    Cells,
     /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
     TaylorGreen,
     /// Lid-driven cavity over the same; takes one to two minutes.
@@ -51,20 +53,29 @@ pub(super) enum Solver {
     Dem,
     /// Lattice Boltzmann method; takes 2 GB of memory.
     Lbm,
+    /// Weighted Voronoi diagrams, on one thread; takes half a minute.
+    Tessellate,
 }
 
 #[derive(Args, Debug)]
 pub(super) struct Speed {
-    /// Numbers of grains; fluids have boxes of their own.
-    #[arg(long, value_delimiter = ',', default_value = "3000,13000,100000")]
-    sizes: Vec<usize>,
+    /// Numbers of disks in a collapsing column.
+    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "3000,13000,100000", value_name = "LIST")]
+    disks: Vec<usize>,
+    /// Numbers of spheres that settle in a box.
+    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "50000", value_name = "LIST")]
+    spheres: Vec<usize>,
+    /// Numbers of sites of a tessellation.
+    #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000,1000000", value_name = "LIST")]
+    sites: Vec<usize>,
     /// Numbers of threads, each in a pool of its own.
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
     pools: Vec<usize>,
     /// Windows of one second; the median is shown.
     #[arg(long, default_value_t = 3, value_name = "N")]
     repeats: usize,
-    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r`.
+    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r` for disks, and
+    /// `x y z vx vy vz wx wy wz r` or `x y z r` for spheres.
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Write the states that were measured on to this folder.
@@ -80,6 +91,7 @@ impl Bench {
                     Case::Restitution => Precision::Restitution,
                     Case::Hertz => Precision::Hertz,
                     Case::Column => Precision::Column,
+                    Case::Cells => Precision::Cells,
                     Case::TaylorGreen => Precision::TaylorGreen,
                     Case::Cavity => Precision::Cavity,
                     Case::SchaeferTurek => Precision::SchaeferTurek,
@@ -91,10 +103,15 @@ impl Bench {
                 show(common, &json!(study), || format!("{study}{files}"));
             }
             Self::Speed { solver, flags } => {
-                let Speed { sizes, pools: threads, repeats, state, write_state } = flags;
+                let Speed { disks, spheres, sites, pools: threads, repeats, state, write_state } = flags;
                 let speeds = match solver {
+                    Solver::Tessellate => {
+                        let rates = tessellate::tessellate(&sites, repeats)?;
+                        show(common, &json!(rates), || tessellate::table(&rates));
+                        return Ok(());
+                    }
                     Solver::Dem => {
-                        speed::dem(&speed::Request { sizes, threads, repeats, state, write_state })?
+                        speed::dem(&speed::Request { disks, spheres, threads, repeats, state, write_state })?
                     }
                     Solver::Lbm => lattice::lbm(&lattice::Request { threads, repeats })?,
                 };

@@ -81,14 +81,14 @@ pub(super) fn chains(
 }
 
 /// The plane that is drawn, in millimetres: x and the upward axis.
-fn in_plane(scene: &Scene, [x, y, z]: [f64; 3]) -> [f64; 2] {
+pub(super) fn in_plane(scene: &Scene, [x, y, z]: [f64; 3]) -> [f64; 2] {
     match scene.dimension {
         crate::scene::Dimension::Plane => [1e3 * x, 1e3 * y],
         crate::scene::Dimension::Space => [1e3 * x, 1e3 * z],
     }
 }
 
-fn axes(scene: &Scene) -> [String; 2] {
+pub(super) fn axes(scene: &Scene) -> [String; 2] {
     match scene.dimension {
         crate::scene::Dimension::Plane => ["x [mm]".to_owned(), "y [mm]".to_owned()],
         crate::scene::Dimension::Space => ["x [mm]".to_owned(), "z [mm]".to_owned()],
@@ -96,7 +96,7 @@ fn axes(scene: &Scene) -> [String; 2] {
 }
 
 /// Floor and left wall, as far as grains reach in any panel.
-fn add_walls(scene: &Scene, panels: &mut [GrainPanel]) {
+pub(super) fn add_walls(scene: &Scene, panels: &mut [GrainPanel]) {
     let ends = panels.iter().flat_map(|panel| {
         let grains = panel
             .grains

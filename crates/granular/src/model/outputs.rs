@@ -4,7 +4,8 @@ use super::{Problems, nearest};
 use crate::folder::RESERVED;
 use crate::observers::{Grid, Line};
 use crate::probes;
-use crate::scene::{Chosen, EverySpec, FigureSpec, Scene, Writer};
+use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Scene, Writer};
+use crate::voronoi;
 use granular_core::{Location, Shown, ShownAs, Solver};
 use std::path::{Component, Path};
 
@@ -28,6 +29,11 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
                 "a program with the cargo feature `hdf5`",
                 hint,
             );
+        }
+        let free_surface = output.write.free_surface();
+        if !(free_surface > 1.0 && free_surface.is_finite()) {
+            let hint = "cells larger than this many times the mean are free surface; 2 is the default";
+            problems.add(format!("outputs.{k}.write.free_surface"), free_surface, "a number above 1", hint);
         }
         let place = format!("outputs.{k}.write.path");
         let path = output.write.path();
@@ -64,11 +70,13 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
             FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
             FigureSpec::Flow { times, .. }
             | FigureSpec::RadialProfile { times, .. }
+            | FigureSpec::Cells { times, .. }
             | FigureSpec::Map { times, .. }
             | FigureSpec::Profile { times, .. } => ("times", times.is_empty()),
             _ => ("", false),
         };
-        if let FigureSpec::Map { range: Some(range), .. } = figure
+        if let FigureSpec::Map { range: Some(range), .. } | FigureSpec::Cells { range: Some(range), .. } =
+            figure
             && !matches!(range.as_slice(), [low, high] if low < high)
         {
             let allowed = "two values, the lower one first";
@@ -106,14 +114,21 @@ fn claim(place: &str, path: &str, files: Vec<String>, taken: &mut Vec<Vec<String
     taken.push(files);
 }
 
+/// What outputs can show of a solver at its own places.
+pub fn all_shown(solver: &dyn Solver) -> Vec<Shown> {
+    let mut list = probes::shown(solver);
+    list.extend(voronoi::shown(solver));
+    list
+}
+
 /// What outputs with a `grid` can show of a solver; nothing unless it has grains.
 pub fn shown_on_grids(solver: &dyn Solver) -> Vec<Shown> {
-    if matches!(solver.location(), Location::Points(_)) { Grid::shown() } else { Vec::new() }
+    if matches!(solver.location(), Location::Points(_)) { Grid::shown(solver) } else { Vec::new() }
 }
 
 /// Checks of probes, fields and columns.
 pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static str, problems: &mut Problems) {
-    let (own, averaged) = (probes::shown(solver), Grid::shown());
+    let (own, averaged) = (all_shown(solver), Grid::shown(solver));
     let mut unknown = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
         let (key, kind) = match &output.write {
@@ -229,6 +244,10 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
 /// been blamed: what seems to lack is perhaps only misspelt.
 fn check_figures(scene: &Scene, front: &'static str, unknown: &[&str], problems: &mut Problems) {
     for (k, figure) in scene.figures.iter().enumerate() {
+        if matches!(figure, FigureSpec::Cells { .. }) && scene.dimension == Dimension::Space {
+            let hint = "Flow draws spheres; `local_density` can be its colour";
+            problems.add(format!("figures.{k}"), "Cells in space", "Cells in the plane", hint);
+        }
         let need = figure.needs(front);
         let place = format!("figures.{k}.{}", need.key);
         let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);

@@ -1,6 +1,7 @@
 //! Where the fields of an output come from: the places of the solver, or grains averaged on a grid.
 
 use crate::scene::GridSpec;
+use crate::voronoi;
 use granular_core::units::Length;
 use granular_core::{D2, D3, Dim, FieldSink, Location, Shown, Simulation, Solver, Vector};
 use granular_dem::{CoarseGrid, Dem};
@@ -50,16 +51,19 @@ impl Grid {
     }
 
     /// Names and meanings of the fields.
-    pub(crate) fn shown() -> Vec<Shown> {
-        Dem::<D3>::coarse_catalogue()
+    pub(crate) fn shown(solver: &dyn Solver) -> Vec<Shown> {
+        let mut list = Dem::<D3>::coarse_catalogue();
+        list.extend(voronoi::shown_on_grid(solver));
+        list
     }
 
-    fn show(&self, solver: &dyn Solver, sink: &mut dyn FieldSink) {
+    fn show(&self, solver: &dyn Solver, free_surface: f64, sink: &mut dyn FieldSink) {
         let any: &dyn Any = solver;
         match self {
             Self::Plane(grid) => {
                 if let Some(dem) = any.downcast_ref::<Dem<D2>>() {
                     dem.show_coarse(grid, sink);
+                    voronoi::show_on_grid(grid, solver, free_surface, sink);
                 }
             }
             Self::Space(grid) => {
@@ -94,39 +98,40 @@ fn grid<D: Dim>(spec: &GridSpec) -> Result<CoarseGrid<D>, NoGrid> {
 
 /// Where fields come from.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Source {
-    /// The solver, at its own places.
-    Solver,
-    /// Grains averaged on a grid.
-    Grid(Grid),
+pub(super) struct Source {
+    /// Cells over which grains are averaged; without, the places of the solver.
+    grid: Option<Grid>,
+    /// Voronoi cells larger than this many times the mean are free surface.
+    free_surface: f64,
 }
 
 impl Source {
     /// Of an output; the check has refused what cannot be.
-    pub(super) fn of(spec: Option<&GridSpec>, simulation: &Simulation) -> Self {
+    pub(super) fn of(spec: Option<&GridSpec>, free_surface: f64, simulation: &Simulation) -> Self {
         let grid = spec.and_then(|spec| Grid::of(spec, simulation.solver()).ok());
-        grid.map_or(Self::Solver, Self::Grid)
+        Self { grid, free_surface }
     }
 
     pub(super) fn location<'a>(&self, simulation: &'a Simulation) -> Location<'a> {
-        match self {
-            Self::Solver => simulation.solver().location(),
-            Self::Grid(grid) => grid.location(),
+        match &self.grid {
+            None => simulation.solver().location(),
+            Some(grid) => grid.location(),
         }
     }
 
     /// Collects fields; with those of a grid, the mass that lies beyond it.
     pub(super) fn frame(&self, names: &[String], simulation: &Simulation) -> Frame {
         let names = names.iter().map(String::as_str);
-        match self {
-            Self::Solver => {
+        match &self.grid {
+            None => {
                 let mut frame = Frame::wanting(names);
                 simulation.solver().show(&mut frame);
+                voronoi::show(simulation.solver(), self.free_surface, &mut frame);
                 frame
             }
-            Self::Grid(grid) => {
+            Some(grid) => {
                 let mut frame = Frame::wanting(names.chain([OUTSIDE]));
-                grid.show(simulation.solver(), &mut frame);
+                grid.show(simulation.solver(), self.free_surface, &mut frame);
                 frame
             }
         }

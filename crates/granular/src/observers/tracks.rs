@@ -3,9 +3,11 @@
 use super::series::Series;
 use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
 use crate::scene::Chosen;
+use crate::voronoi;
 use granular_core::{FieldRef, Location};
 use granular_io::Frame;
 use granular_io::frame::Values;
+use granular_tessellate::FREE_SURFACE;
 use std::path::PathBuf;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -59,6 +61,7 @@ impl TracksObserver {
 fn frame(fields: &[String], simulation: &Simulation) -> Frame {
     let mut frame = Frame::wanting(fields.iter().map(String::as_str).chain(["id"]));
     simulation.solver().show(&mut frame);
+    voronoi::show(simulation.solver(), FREE_SURFACE, &mut frame);
     frame
 }
 

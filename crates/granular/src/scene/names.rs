@@ -1,6 +1,7 @@
 //! Which names a scene uses: files of outputs, and what figures need of them.
 
 use super::{FigureSpec, GridSpec, Writer};
+use granular_tessellate::FREE_SURFACE;
 
 /// What a figure draws from.
 pub(crate) struct Need<'a> {
@@ -53,6 +54,14 @@ impl Writer {
         }
     }
 
+    /// Voronoi cells larger than this many times the mean are free surface.
+    pub(crate) fn free_surface(&self) -> f64 {
+        match self {
+            Self::Table { free_surface, .. } | Self::Fields { free_surface, .. } => *free_surface,
+            _ => FREE_SURFACE,
+        }
+    }
+
     /// Cells over which grains are averaged, if they are.
     pub(crate) fn grid(&self) -> Option<&GridSpec> {
         match self {
@@ -71,6 +80,7 @@ impl FigureSpec {
             | Self::RadialProfile { path, .. }
             | Self::Energies { path, .. }
             | Self::Flow { path, .. }
+            | Self::Cells { path, .. }
             | Self::ForceChains { path, .. }
             | Self::Map { path, .. }
             | Self::Profile { path, .. }
@@ -111,6 +121,13 @@ impl FigureSpec {
                 writer: "Fields",
                 output: fields,
                 names: vec!["radius"],
+                stage: Some(stage),
+            },
+            Self::Cells { fields, stage, .. } => Need {
+                key: "fields",
+                writer: "Fields",
+                output: fields,
+                names: vec!["radius", "local_density", "in_bulk"],
                 stage: Some(stage),
             },
             Self::ForceChains { contacts, stage, .. } => Need {

@@ -2,6 +2,7 @@
 
 use super::fluid::ReferenceSpec;
 use granular_core::units::{Length, Time};
+use granular_tessellate::FREE_SURFACE;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -34,6 +35,10 @@ pub enum Writer {
         path: String,
         /// Numbers to write; `granular info <scene>` lists all there are.
         probes: Vec<String>,
+        /// Voronoi cells larger than this many times the mean are free surface and no part of the bulk, 2 by default; both
+        /// measured in the grain's own area or volume.
+        #[serde(default = "free_surface")]
+        free_surface: f64,
     },
     /// Fields of all grains or cells, for ParaView: one `.vtp` or `.vti` per frame and one `.pvd` that lists them.
     Fields {
@@ -44,6 +49,10 @@ pub enum Writer {
         /// Cells over which grains are averaged; the fields are then those of a continuum.
         #[serde(default)]
         grid: Option<GridSpec>,
+        /// Voronoi cells larger than this many times the mean are free surface and no part of the bulk, 2 by default; both
+        /// measured in the grain's own area or volume.
+        #[serde(default = "free_surface")]
+        free_surface: f64,
     },
     /// Contacts as lines between grains, for ParaView.
     Contacts {
@@ -104,6 +113,10 @@ pub struct GridSpec {
     /// Scale of the kernel over the spacing, 1 to 8. Fields are smooth when the scale is at least a mean diameter.
     #[serde(default = "one_cell")]
     pub width: usize,
+}
+
+fn free_surface() -> f64 {
+    FREE_SURFACE
 }
 
 fn one_cell() -> usize {
@@ -187,6 +200,21 @@ pub enum FigureSpec {
         fields: String,
         /// Field that gives the colour.
         color: String,
+        /// Name of the stage from whose start times count.
+        stage: String,
+        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
+        times: Vec<f64>,
+    },
+    /// Voronoi cells over the grains, grey by their packing density, dark where it is high and white at the free surface; in
+    /// the plane.
+    Cells {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Fields` output to read; it must hold `radius`, `local_density` and `in_bulk`.
+        fields: String,
+        /// First and last density of the greys; from the data by default.
+        #[serde(default)]
+        range: Option<Vec<f64>>,
         /// Name of the stage from whose start times count.
         stage: String,
         /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.

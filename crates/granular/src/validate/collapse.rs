@@ -148,6 +148,33 @@ impl Collapse {
         })
     }
 
+    /// Runs it until some time after the opening of the gate, in units of sqrt(H/g), and looks at it then and, before, when
+    /// the gate opens.
+    ///
+    /// # Errors
+    /// When the scene is wrong or refused, or the solver gives up.
+    pub(crate) fn watch<T>(
+        &self,
+        time: f64,
+        look: impl Fn(&Simulation) -> Result<T, Failure>,
+    ) -> Result<[T; 2], Failure> {
+        let (scene, mut model) = check::read(&self.scene()?)?;
+        let (_, steps, problems) = check::limits_of(&scene, &model);
+        if !problems.is_empty() {
+            return Err(Failure::Refused(problems));
+        }
+        let column = model.column.expect("the template is a column");
+        let (last, settling) = steps.split_last().expect("the template has stages");
+        for (index, &dt) in settling.iter().enumerate() {
+            self.stage(&scene, &mut model, index, dt)?;
+        }
+        let settled = look(&model.simulation)?;
+        begin(&mut model, settling.len());
+        let unit = (column.height / gravity(&scene)).sqrt();
+        self.part(&mut model, *last, time * unit, Vec::new())?;
+        Ok([settled, look(&model.simulation)?])
+    }
+
     /// Runs a stage and returns the largest energy residual.
     fn stage(&self, scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<f64, Failure> {
         begin(model, index);

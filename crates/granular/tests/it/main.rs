@@ -12,6 +12,7 @@ mod command_flow;
 mod command_interrupt;
 mod command_sample;
 mod command_snapshots;
+mod command_sweep;
 mod scenes;
 mod stability;
 mod support;

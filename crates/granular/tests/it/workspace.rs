@@ -25,6 +25,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "granular-packing",
             "granular-dem",
             "granular-lbm",
+            "granular-tessellate",
             "granular-coupling",
             "granular-io",
             "granular-validation-data",

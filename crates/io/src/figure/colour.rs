@@ -31,6 +31,11 @@ impl Colour {
         Self::between(&VIRIDIS, share)
     }
 
+    /// Greys from light at 0 to dark at 1.
+    pub(super) fn of_density(share: f64) -> Self {
+        Self::between(&[0xf4f4f4, 0x3a3a3a], share)
+    }
+
     /// The map RdBu of ColorBrewer from blue at 0 over white at one half to red at 1: it is as
     /// light at either side of the middle, and colour-blind readers can tell the sides apart.
     pub(super) fn of_signed_share(share: f64) -> Self {

@@ -152,6 +152,10 @@ impl Drawing {
         self.shapes.push(Shape::Circle { center, radius, fill: Some(fill), stroke });
     }
 
+    pub(super) fn ring(&mut self, center: Spot, radius: f64, stroke: Stroke) {
+        self.shapes.push(Shape::Circle { center, radius, fill: None, stroke: Some(stroke) });
+    }
+
     /// Pixels that fill an area; none when it has no extent.
     pub(super) fn image(&mut self, image: Image, area: Area) {
         if area.width() > 0.0 && area.height() > 0.0 {

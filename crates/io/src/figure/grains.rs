@@ -31,13 +31,24 @@ pub struct Chain {
     pub force: f64,
 }
 
+/// A cell of a grain, drawn below it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Patch {
+    /// Corners of its outline, in the unit of the axes.
+    pub outline: Vec<[f64; 2]>,
+    /// What the colour shows; white when not finite.
+    pub value: f64,
+}
+
 /// One snapshot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrainPanel {
     /// Text above, such as `t = 1.0 τ`.
     pub label: String,
-    /// Disks.
+    /// Disks; with cells in the figure their outlines only.
     pub grains: Vec<Grain>,
+    /// Cells, light to dark with their values; then the colours are of them.
+    pub cells: Vec<Patch>,
     /// Walls as lines between two points.
     pub walls: Vec<[[f64; 2]; 2]>,
     /// Contacts, drawn above the grains.
@@ -110,7 +121,8 @@ impl GrainFigure {
         }
         if barred {
             let (quantity, range) = (self.quantity.as_str(), self.colours());
-            let bar = ColourBar { quantity, range, colour: Colour::of_share, strips: 64, beyond: [false; 2] };
+            let colour = if self.has_cells() { Colour::of_density } else { Colour::of_share };
+            let bar = ColourBar { quantity, range, colour, strips: 64, beyond: [false; 2] };
             bar.draw(&mut drawing, &layout);
         }
         if noted {
@@ -121,8 +133,15 @@ impl GrainFigure {
         Figure { drawing }
     }
 
+    fn has_cells(&self) -> bool {
+        self.panels.iter().any(|panel| !panel.cells.is_empty())
+    }
+
     fn values(&self) -> impl Iterator<Item = f64> {
-        self.panels.iter().flat_map(|panel| panel.grains.iter().map(|grain| grain.value))
+        let of_cells = self.has_cells();
+        let grains = self.panels.iter().flat_map(|panel| panel.grains.iter().map(|grain| grain.value));
+        let cells = self.panels.iter().flat_map(|panel| panel.cells.iter().map(|cell| cell.value));
+        grains.filter(move |_| !of_cells).chain(cells)
     }
 
     fn strongest(&self) -> f64 {
@@ -140,9 +159,23 @@ impl GrainFigure {
         drawing.rectangle(area, None, Some(Stroke::plain(Colour::GRID, 0.8)));
         layout.draw_label(drawing, index, &panel.label);
         let [low, high] = self.colours();
+        // Of grains that are small in the figure, lines of one width would hide the greys.
+        let fine = |radius: f64| (0.05 * radius).clamp(0.04, 0.6);
+        let mean = panel.grains.iter().map(|grain| grain.radius * layout.scale).sum::<f64>();
+        let width = fine(mean / panel.grains.len().max(1) as f64);
+        for cell in &panel.cells {
+            let spots: Vec<Spot> = cell.outline.iter().map(|&corner| place(corner)).collect();
+            let share = (cell.value - low) / (high - low);
+            let fill = share.is_finite().then(|| Fill::solid(Colour::of_density(share)));
+            drawing.polygon(&spots, fill, Some(Stroke::plain(Colour::FRAME, width)));
+        }
         for grain in &panel.grains {
             let radius = grain.radius * layout.scale;
             if !(radius > 0.0 && area.grown(0.5).contains(place(grain.center))) {
+                continue;
+            }
+            if self.has_cells() {
+                drawing.ring(place(grain.center), radius, Stroke::plain(Colour::of_series(1), fine(radius)));
                 continue;
             }
             let share = (grain.value - low) / (high - low);

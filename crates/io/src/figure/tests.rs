@@ -75,7 +75,8 @@ fn odd_grains_still_give_a_figure() {
         grain(3.0, f64::INFINITY, -1e308),
     ];
     let walls = vec![[[0.0, f64::INFINITY], [1.0, 1.0]]];
-    let panel = GrainPanel { label: "odd".into(), grains, walls, chains: vec![chain] };
+    let panel =
+        GrainPanel { label: "odd".into(), grains, walls, chains: vec![chain], ..GrainPanel::default() };
     let mut figure = GrainFigure::new("odd", "v [m/s]", vec![panel.clone(), panel]);
     assert!(is_sane(&figure.figure()));
     figure.corners = Some([[1.0, 1.0], [0.0, f64::NAN]]);
@@ -99,4 +100,20 @@ proptest! {
         }
         prop_assert!(is_sane(&chart.figure_of(200.0, 150.0)));
     }
+}
+
+#[test]
+fn cells_are_grey_by_their_value_and_grains_above_them_are_rings() {
+    let square = |x: f64, value: f64| Patch {
+        outline: vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]],
+        value,
+    };
+    let grains = vec![Grain { center: [0.5, 0.5], radius: 0.5, value: 7.0 }];
+    let cells = vec![square(0.0, 0.6), square(1.0, 0.9), square(2.0, f64::NAN)];
+    let panel = GrainPanel { grains, cells, ..GrainPanel::default() };
+    let svg = GrainFigure::new("", "density [-]", vec![panel]).figure().svg();
+    let [light, dark] = [0.0, 1.0].map(|share| colour::Colour::of_density(share).hex());
+    assert!(svg.contains(&format!("fill=\"{light}\"")) && svg.contains(&format!("fill=\"{dark}\"")), "{svg}");
+    // A cell without a value and the grain have no fill.
+    assert!(svg.contains("<circle") && svg.matches("fill=\"none\"").count() >= 2);
 }

@@ -1,8 +1,8 @@
 //! Diagrams with known cells, and random ones against brute force.
 
-use crate::support::{Random, distance, in_cell, unit_square, violation};
+use crate::support::{Random, distance, unit_square, violation};
 use granular_core::glam::DVec2;
-use granular_tessellate::{Diagram, Domain};
+use granular_tessellate::{Diagram, Domain, bulk_density, encloses};
 
 fn sites(count: usize, largest: f64, random: &mut Random) -> (Vec<DVec2>, Vec<f64>) {
     (0..count).map(|_| (random.point(), largest * random.unit())).unzip()
@@ -50,26 +50,68 @@ fn random_diagrams_obey_the_definition() {
 #[test]
 fn points_lie_in_the_cell_of_the_nearest_disk() {
     let domain = unit_square();
-    for seed in 0..40 {
+    let mut count = 0;
+    for seed in 0..60 {
         let mut random = Random(1000 + seed);
         let (positions, radii) = sites(12, [0.02, 0.2, 0.6][seed as usize % 3], &mut random);
         let diagram = Diagram::new(&positions, &radii).unwrap();
         let cells = diagram.cells(&domain);
-        for _ in 0..100 {
+        let boundaries: Vec<_> = (0..12).map(|site| cells.boundary(site)).collect();
+        for _ in 0..300 {
             let point = random.point();
             let nearest = diagram.nearest(point);
             let least = distance(&diagram, nearest, point);
-            for site in 0..12 {
-                let further = distance(&diagram, site, point) - least;
-                if site == nearest || further > 1e-3 {
-                    // Points next to a border are left out: the test draws curves as polygons.
-                    let others = (0..12).filter(|&other| other != nearest);
-                    let margin = others.map(|other| distance(&diagram, other, point) - least);
-                    if margin.fold(f64::INFINITY, f64::min) > 1e-3 {
-                        assert_eq!(in_cell(&cells, site, point), site == nearest, "{seed} {site} {point}");
-                    }
+            let others = (0..12).filter(|&other| other != nearest);
+            // At a border rounding decides.
+            if others.map(|other| distance(&diagram, other, point) - least).all(|margin| margin > 1e-12) {
+                count += 1;
+                for (site, boundary) in boundaries.iter().enumerate() {
+                    assert_eq!(encloses(boundary, point), site == nearest, "{seed} {site} {point}");
                 }
             }
         }
     }
+    assert!(count > 17_000, "{count}");
+}
+
+#[test]
+fn domains_may_be_polygons_and_sites_may_lie_outside() {
+    let corners: Vec<DVec2> = (0..7).map(|k| DVec2::from_angle(f64::from(k) * 0.9)).collect();
+    let domain = Domain::polygon(&corners).unwrap();
+    for seed in 0..100 {
+        let mut random = Random(seed);
+        let count = 1 + random.below(40);
+        let (mut positions, radii) = sites(count, 0.4, &mut random);
+        positions.iter_mut().for_each(|position| *position = (*position - 0.5) * 6.0);
+        let diagram = Diagram::new(&positions, &radii).unwrap();
+        assert_eq!(violation(&diagram, &domain, 1e-12), None, "seed {seed}, {count} sites");
+    }
+    let clockwise: Vec<DVec2> = corners.iter().rev().copied().collect();
+    assert!(Domain::polygon(&clockwise).unwrap_err().to_string().contains("counter-clockwise"));
+    let star: Vec<DVec2> =
+        (0..5).map(|k| DVec2::from_angle(f64::from(k) * 2.0 * 1.256_637_061_435_917)).collect();
+    assert!(Domain::polygon(&star).is_err());
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let centres = [DVec2::ZERO, DVec2::new(f64::NAN, 0.0)];
+    let says = |positions: &[DVec2], radii: &[f64]| Diagram::new(positions, radii).unwrap_err().to_string();
+    assert!(says(&[], &[]).contains("number of sites is 0"));
+    assert!(says(&centres, &[1.0]).contains("number of radii is 1"));
+    assert!(says(&centres, &[1.0, 1.0]).contains("x of site 1 is NaN"));
+    assert!(says(&centres[..1], &[f64::INFINITY]).contains("radius of site 0 is inf"));
+}
+
+#[test]
+fn bulk_density_leaves_out_the_free_surface() {
+    // Ten compact cells and two that are open to the air.
+    let radii = [0.5; 12];
+    let mut areas = vec![1.0; 10];
+    areas.extend([4.0, 30.0]);
+    let bulk = bulk_density(&radii, &areas, 2.0).unwrap();
+    assert!((bulk.density - std::f64::consts::FRAC_PI_4).abs() < 1e-15);
+    assert_eq!(bulk.cells, 10);
+    assert_eq!(bulk_density(&radii, &areas, 1e3).unwrap().cells, 12);
+    assert_eq!(bulk_density(&radii, &[0.0; 12], 2.0), None);
 }

@@ -4,6 +4,7 @@
 
 mod diagrams;
 mod extreme;
+mod periodic;
 mod power;
 mod properties;
 mod support;

@@ -1,7 +1,7 @@
 //! Random disks, and what a diagram must obey.
 
 use granular_core::glam::DVec2;
-use granular_tessellate::{Cells, Diagram, Domain};
+use granular_tessellate::{Diagram, Domain};
 
 /// Random numbers of a seed (SplitMix64).
 pub(crate) struct Random(pub(crate) u64);
@@ -36,22 +36,6 @@ pub(crate) fn unit_square() -> Domain {
 /// Distance of a point to a disk.
 pub(crate) fn distance(diagram: &Diagram, site: usize, point: DVec2) -> f64 {
     (point - diagram.position(site)).length() - diagram.radius(site)
-}
-
-/// Whether a point is in a cell: an odd number of sides of its boundary, drawn finely, lie at its right.
-pub(crate) fn in_cell(cells: &Cells<'_>, site: usize, point: DVec2) -> bool {
-    let mut inside = false;
-    for side in cells.boundary(site).iter().flatten() {
-        let count = if side.is_straight() { 1 } else { 200 };
-        let points: Vec<DVec2> = (0..=count).map(|k| side.point(f64::from(k) / f64::from(count))).collect();
-        for pair in points.windows(2) {
-            let (a, b) = (pair[0], pair[1]);
-            if (a.y > point.y) != (b.y > point.y) {
-                inside ^= point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y);
-            }
-        }
-    }
-    inside
 }
 
 /// What every diagram obeys, as a reason if it does not: areas are not negative and sum to the domain, hidden
