@@ -341,12 +341,13 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
         return None;
     }
     let distance = squared.sqrt();
-    let mut rate = D::Vec::ZERO;
+    let (mut rate, mut start_rate) = (D::Vec::ZERO, D::Vec::ZERO);
     for axis in 0..D::N {
         rate += cell.edge_rate.columns[axis] * f64::from(pair.shift[axis]);
+        start_rate += cell.start_rate.columns[axis] * f64::from(pair.shift[axis]);
     }
     let velocity = view.velocity[second] + rate;
-    let start_velocity = if L::TANGENTIAL { view.start_velocity[second] + rate } else { D::Vec::ZERO };
+    let start_velocity = if L::TANGENTIAL { view.start_velocity[second] + start_rate } else { D::Vec::ZERO };
     let (meeting, arms) = meet_other::<D, L>(view, first, second, arm, distance, (velocity, start_velocity))?;
     Some((meeting, arms, sum - distance))
 }
