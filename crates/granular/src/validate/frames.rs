@@ -100,10 +100,9 @@ pub(super) fn shifts(rows: &mut Rows, _: Effort) -> Result<(), Failure> {
     for contact in [ContactModel::Linear, ContactModel::Hertz] {
         shifted::<D2>(rows, contact)?;
         shifted::<D3>(rows, contact)?;
-        at_rest::<D2>(rows, contact)?;
-        at_rest::<D3>(rows, contact)?;
     }
-    Ok(())
+    at_rest::<D2>(rows, ContactModel::Linear)?;
+    at_rest::<D3>(rows, ContactModel::Linear)
 }
 
 fn shifted<D: Dim>(rows: &mut Rows, contact: ContactModel) -> Result<(), Failure> {
@@ -142,8 +141,11 @@ fn at_rest<D: Dim>(rows: &mut Rows, contact: ContactModel) -> Result<(), Failure
     dem.control_cell(CellControl::isotropic::<D>(target)).map_err(refused)?;
     let dt = step(&dem, contact);
     for _ in 0..60 {
-        dem.advance(dt, 500)?;
-        if dem.energies().translational() + dem.energies().rotational < 1e-9 * target {
+        dem.advance(dt, 1000)?;
+        let moving = dem.energies().translational() + dem.energies().rotational;
+        // A gas that the servo has just begun to squeeze is nearly at rest too.
+        let pressed = mean_pressure(&dem.cell_stress().unwrap_or_default()) > 0.9 * target;
+        if pressed && moving < 1e-9 * target {
             break;
         }
     }
