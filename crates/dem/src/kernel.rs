@@ -336,7 +336,8 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         // component along it would slide on each other by this difference.
         let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
         let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
-        meeting.start_slip = D::cross(start_normal, relative) - surface;
+        // Within the tangent plane of now, or the moments on the two bodies would not balance.
+        meeting.start_slip = D::tangential(D::cross(start_normal, relative) - surface, normal);
         meeting.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
         meeting.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {

@@ -238,14 +238,6 @@ fn turning<D: Dim>(
     let shear = still.at(0, 1) / pressure;
     let measure = Measure::absolute(Tier::Identity, metric, error, 0.0, 1e-3);
     let measure = measure.note(format!("shear stress {shear:.3} of the pressure"));
-    // Known and not mended: it is of the first order in the step.
-    rows.add(if D::TWISTS {
-        measure.claim().note(
-            "does not hold: the spin at the start of a step is seen along the normal of its middle, which adds a slip of \
-             (W.n) |n x W| d dt / 2 per time, here as much as the slip of the shear; of the first order in the step",
-        )
-    } else {
-        measure
-    });
+    rows.add(measure);
     Ok(())
 }
