@@ -290,15 +290,15 @@ impl Dim for D3 {
     }
     #[inline(always)]
     fn follow(spring: DVec3, normal: DVec3, twist: f64) -> DVec3 {
-        let length = spring.length();
-        if length == 0.0 {
+        let squared = spring.length_squared();
+        if squared == 0.0 {
             return DVec3::ZERO;
         }
         let turned = spring + normal.cross(spring) * twist;
         let flat = turned - normal * turned.dot(normal);
-        let flat_length = flat.length();
+        let flat_squared = flat.length_squared();
         // Compared so that what is not a number stays so instead of becoming zero.
-        if flat_length == 0.0 { DVec3::ZERO } else { flat * (length / flat_length) }
+        if flat_squared == 0.0 { DVec3::ZERO } else { flat * (squared / flat_squared).sqrt() }
     }
     #[inline(always)]
     fn twist(spin: DVec3, normal: DVec3) -> f64 {

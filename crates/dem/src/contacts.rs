@@ -18,6 +18,7 @@ use crate::moving::Reaction;
 use crate::wall::Wall;
 use granular_core::search::CellGrid;
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
+use multiversion::multiversion;
 
 /// A contact between steps, for output.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +87,8 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     -> Result<(), SnapshotError>;
     fn law_name(&self) -> &'static str;
     fn tangential(&self) -> bool;
+    /// Whether any law asks for the predicted motion across contacts.
+    fn predicts(&self) -> bool;
     /// Bytes in lists, and bytes that one contact remembers.
     fn bytes(&self) -> (usize, usize);
 }
@@ -221,7 +224,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
                     tally: Tally::default(),
                     trouble: None,
                 };
-                kernel.pairs(&mut list.0[0], &mut outgoing.0[0]);
+                pass(&mut kernel, &mut list.0[0], &mut outgoing.0[0]);
                 if let (Some(cell), Some(images)) = (view.cell, images.0.first_mut()) {
                     let of_images = outgoing.0[0].len() - images.owed;
                     kernel.images(cell, images, &mut outgoing.0[0][of_images..]);
@@ -414,6 +417,10 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         L::TANGENTIAL
     }
 
+    fn predicts(&self) -> bool {
+        self.laws.iter().any(L::predicts)
+    }
+
     fn bytes(&self) -> (usize, usize) {
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
         let facets: usize = self.facets.iter().map(FacetList::bytes).sum();
@@ -422,4 +429,15 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let images: usize = self.images.iter().map(ImageList::bytes).sum();
         (lists + facets + outgoing + inbox + images, size_of::<L::Memory>())
     }
+}
+
+/// The contacts of a block between grains, compiled for wide registers too. Nothing is contracted:
+/// the bits are the same.
+#[multiversion(targets("x86_64+avx2"))]
+fn pass<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
+    kernel: &mut Kernel<'_, D, L, LEDGER>,
+    list: &mut BlockList<L::Memory>,
+    outgoing: &mut [Owed<D>],
+) {
+    kernel.pairs(list, outgoing);
 }

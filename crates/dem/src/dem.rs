@@ -380,6 +380,7 @@ impl<D: Dim> Dem<D> {
             velocity: &self.grains.middle_velocity,
             spin: &self.grains.middle_spin,
             dt,
+            predicts: self.pairs.predicts(),
             margin,
             ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
         };
@@ -427,6 +428,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         cell: None,
         dt: 0.0,
         last_dt,
+        predicts: true,
         margin: 0.0,
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
     }

@@ -31,6 +31,8 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) dt: f64,
     /// The last step taken \[s\].
     pub(crate) last_dt: f64,
+    /// Whether a law asks how surfaces pass each other in the middle of the step, as predicted.
+    pub(crate) predicts: bool,
     /// Surfaces farther apart than this do not meet within the step \[m\].
     pub(crate) margin: f64,
     /// Part of the overlap by which each lever arm is shorter than the radius.
@@ -72,7 +74,13 @@ impl<L> Copy for Laws<'_, L> {}
 impl<'a, L> Laws<'a, L> {
     #[inline(always)]
     pub(crate) fn between(self, a: u8, b: u8) -> &'a L {
-        &self.list[a as usize * self.materials + b as usize]
+        &self.of(a)[b as usize]
+    }
+
+    /// The laws of a material with every other.
+    #[inline(always)]
+    pub(crate) fn of(self, material: u8) -> &'a [L] {
+        &self.list[material as usize * self.materials..][..self.materials]
     }
 }
 
@@ -81,15 +89,38 @@ impl<D: Dim> View<'_, D> {
     pub(crate) fn material_of(&self, grain: usize) -> u8 {
         if self.material.is_empty() { self.first_material } else { self.material[grain] }
     }
+
+    /// A grain; what law `L` does not read is left out.
+    #[inline(always)]
+    pub(crate) fn body<L: ContactLaw<D>>(&self, grain: usize) -> Body<D> {
+        let mut body = Body {
+            velocity: self.velocity[grain],
+            start_velocity: D::Vec::ZERO,
+            spin: D::Spin::ZERO,
+            start_spin: D::Spin::ZERO,
+            radius: self.radius[grain],
+            mass: self.mass[grain],
+        };
+        if L::TANGENTIAL {
+            body.start_velocity = self.start_velocity[grain];
+            body.start_spin = self.start_spin[grain];
+            if self.predicts || L::TWISTING {
+                body.spin = self.spin[grain];
+            }
+        }
+        body
+    }
 }
 
-/// Two bodies before they are known to meet: what is needed of the second one.
-struct Other<D: Dim> {
-    velocity: D::Vec,
+/// What a contact reads of a body, besides its place.
+#[derive(Clone, Copy)]
+pub(crate) struct Body<D: Dim> {
+    pub(crate) velocity: D::Vec,
+    pub(crate) start_velocity: D::Vec,
     spin: D::Spin,
-    start_velocity: D::Vec,
     start_spin: D::Spin,
-    arm: f64,
+    radius: f64,
+    mass: f64,
 }
 
 /// Share of the step during which surfaces overlap, and the overlap averaged over the step,
@@ -127,42 +158,37 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         let mut owed = 0;
         for local in 0..self.force.len() {
             let first = self.start + local;
-            let (position, radius) = (view.position[first], view.radius[first]);
+            let (position, own) = (view.position[first], view.body::<L>(first));
             let (mut force, mut torque) = (D::Vec::ZERO, D::Spin::ZERO);
+            let laws = self.laws.of(view.material_of(first));
             let range = list.starts[local] as usize..list.starts[local + 1] as usize;
             for (&partner, memory) in list.partners[range.clone()].iter().zip(&mut list.memory[range]) {
                 let second = partner as usize;
                 let abroad = second < self.start;
                 let arm = position - view.position[second];
-                let sum = radius + view.radius[second];
-                let reach = sum + view.margin;
+                let reach = own.radius + view.radius[second] + view.margin;
                 let squared = arm.length_squared();
-                let met = if squared < reach * reach {
-                    meet_grain::<D, L>(view, first, second, arm, squared.sqrt())
+                let law = &laws[view.material_of(second) as usize];
+                let given = if squared < reach * reach {
+                    let pair = Pair {
+                        first,
+                        own: &own,
+                        other: &view.body::<L>(second),
+                        arm,
+                        distance: squared.sqrt(),
+                    };
+                    self.touch(law, &pair, memory, (&mut force, &mut torque))
                 } else {
                     None
                 };
-                let mut given = Owed::default();
-                if let Some((meeting, arms)) = met {
-                    self.guard(first, sum - squared.sqrt(), radius.min(view.radius[second]));
-                    let law = self.laws.between(view.material_of(first), view.material_of(second));
-                    let load = law.load(&meeting, memory, &mut self.tally);
-                    let on_first = push_of::<D, L>(&load, meeting.normal);
-                    force += on_first;
-                    given.force = -on_first;
-                    if L::TANGENTIAL {
-                        torque += load.rolling - load.tangential * arms.0;
-                        given.torque = -load.rolling - load.tangential * arms.1;
-                    }
-                } else if *memory != L::Memory::default() {
-                    let law = self.laws.between(view.material_of(first), view.material_of(second));
+                if given.is_none() && *memory != L::Memory::default() {
                     law.release(memory, &mut self.tally);
                     *memory = L::Memory::default();
                 }
                 if abroad {
-                    outgoing[owed] = given;
+                    outgoing[owed] = given.unwrap_or_default();
                     owed += 1;
-                } else if met.is_some() {
+                } else if let Some(given) = given {
                     let place = second - self.start;
                     self.force[place] += given.force;
                     if L::TANGENTIAL {
@@ -176,6 +202,30 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
                 self.torque[local] = torque;
             }
         }
+    }
+
+    /// Adds the load of a pair, if it meets within the step, to force and torque of the first;
+    /// returns what the second one gets.
+    #[inline(always)]
+    fn touch(
+        &mut self,
+        law: &L,
+        pair: &Pair<'_, D>,
+        memory: &mut L::Memory,
+        (force, torque): (&mut D::Vec, &mut D::Spin),
+    ) -> Option<Owed<D>> {
+        let (meeting, arms) = pair.meet::<L>(self.view)?;
+        let (radius, other) = (pair.own.radius, pair.other.radius);
+        self.guard(pair.first, radius + other - pair.distance, radius.min(other));
+        let load = law.load(&meeting, memory, &mut self.tally);
+        let on_first = push_of::<D, L>(&load, meeting.normal);
+        *force += on_first;
+        let mut given = Owed { force: -on_first, torque: D::Spin::ZERO };
+        if L::TANGENTIAL {
+            *torque += load.rolling - load.tangential * arms.0;
+            given.torque = -load.rolling - load.tangential * arms.1;
+        }
+        Some(given)
     }
 
     /// Loads of walls; with `MOVING`, of walls that may move.
@@ -244,17 +294,16 @@ pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) 
     if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
 }
 
-/// The meeting of a body with another, if they meet within the step.
+/// The meeting of a body with another, each with its lever arm, if they meet within the step.
 #[inline(always)]
 fn meeting<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
-    first: usize,
-    own_arm: f64,
+    (own, own_arm): (&Body<D>, f64),
+    (other, other_arm): (&Body<D>, f64),
     normal: D::Vec,
     overlap: f64,
-    other: &Other<D>,
 ) -> Option<Meeting<D>> {
-    let relative = view.velocity[first] - other.velocity;
+    let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
     let (presence, overlap) = share_of_step(overlap, approach, view.dt)?;
     let mut meeting = Meeting {
@@ -275,63 +324,47 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
         last_dt: view.last_dt,
     };
     if L::TANGENTIAL {
-        let spin = view.spin[first];
-        let surface = D::tangential(spin * own_arm + other.spin * other.arm, normal);
-        meeting.slip = D::cross(normal, relative) - surface;
-        meeting.roll = D::tangential(spin - other.spin, normal);
-        meeting.twist = 0.5 * D::twist(spin + other.spin, normal);
-        let relative = view.start_velocity[first] - other.start_velocity;
-        let spin = view.start_spin[first];
-        let surface = D::tangential(spin * own_arm + other.start_spin * other.arm, normal);
+        if view.predicts {
+            let surface = D::tangential(own.spin * own_arm + other.spin * other_arm, normal);
+            meeting.slip = D::cross(normal, relative) - surface;
+            meeting.roll = D::tangential(own.spin - other.spin, normal);
+        }
+        let relative = own.start_velocity - other.start_velocity;
+        let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, normal);
         meeting.start_slip = D::cross(normal, relative) - surface;
-        meeting.start_roll = D::tangential(spin - other.start_spin, normal);
+        meeting.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
+        meeting.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {
-            meeting.twisting = D::twist(view.spin[first] - other.spin, normal);
-            meeting.start_twisting = D::twist(spin - other.start_spin, normal);
+            meeting.twisting = D::twist(own.spin - other.spin, normal);
+            meeting.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
         }
     }
     Some(meeting)
 }
 
-/// The meeting of two grains at `distance` and their lever arms.
-#[inline(always)]
-fn meet_grain<D: Dim, L: ContactLaw<D>>(
-    view: &View<'_, D>,
-    first: usize,
-    second: usize,
-    arm: D::Vec,
-    distance: f64,
-) -> Option<(Meeting<D>, (f64, f64))> {
-    let start_velocity = if L::TANGENTIAL { view.start_velocity[second] } else { D::Vec::ZERO };
-    meet_other::<D, L>(view, first, second, arm, distance, (view.velocity[second], start_velocity))
+/// Two grains at a distance: `arm` leads from the second to the first.
+pub(crate) struct Pair<'a, D: Dim> {
+    pub(crate) first: usize,
+    pub(crate) own: &'a Body<D>,
+    pub(crate) other: &'a Body<D>,
+    pub(crate) arm: D::Vec,
+    pub(crate) distance: f64,
 }
 
-/// [`meet_grain`] where the second grain has other velocities, at the middle and at the start of the step.
-#[inline(always)]
-pub(crate) fn meet_other<D: Dim, L: ContactLaw<D>>(
-    view: &View<'_, D>,
-    first: usize,
-    second: usize,
-    arm: D::Vec,
-    distance: f64,
-    (velocity, start_velocity): (D::Vec, D::Vec),
-) -> Option<(Meeting<D>, (f64, f64))> {
-    let (radius, mass) = (view.radius[first], view.mass[first]);
-    let (other_radius, other_mass) = (view.radius[second], view.mass[second]);
-    let overlap = radius + other_radius - distance;
-    let other = Other {
-        velocity,
-        spin: if L::TANGENTIAL { view.spin[second] } else { D::Spin::ZERO },
-        start_velocity,
-        start_spin: if L::TANGENTIAL { view.start_spin[second] } else { D::Spin::ZERO },
-        arm: other_radius - view.arm_share * overlap,
-    };
-    let own_arm = radius - view.arm_share * overlap;
-    let normal = arm * (1.0 / distance);
-    let mut meeting = meeting::<D, L>(view, first, own_arm, normal, overlap, &other)?;
-    meeting.effective_mass = mass * other_mass / (mass + other_mass);
-    meeting.effective_radius = radius * other_radius / (radius + other_radius);
-    Some((meeting, (own_arm, other.arm)))
+impl<D: Dim> Pair<'_, D> {
+    /// The meeting, if there is one within the step, and both lever arms.
+    #[inline(always)]
+    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> Option<(Meeting<D>, (f64, f64))> {
+        let Self { own, other, .. } = *self;
+        let overlap = own.radius + other.radius - self.distance;
+        let shorter = view.arm_share * overlap;
+        let arms = (own.radius - shorter, other.radius - shorter);
+        let normal = self.arm * (1.0 / self.distance);
+        let mut meeting = meeting::<D, L>(view, (own, arms.0), (other, arms.1), normal, overlap)?;
+        meeting.effective_mass = own.mass * other.mass / (own.mass + other.mass);
+        meeting.effective_radius = own.radius * other.radius / (own.radius + other.radius);
+        Some((meeting, arms))
+    }
 }
 
 /// A piece of surface that a grain may meet.
@@ -375,19 +408,21 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
     // A wall does not give way: the contact lies on its surface. A held grain does.
     let given = if ball.is_some() { 1.0 } else { 2.0 };
     let arm = radius - given * view.arm_share * overlap;
-    let mut other = Other {
+    // Velocities of the surface are those at the contact: its lever arm is zero.
+    let mut other = Body {
         velocity: D::Vec::ZERO,
-        spin: D::Spin::ZERO,
         start_velocity: D::Vec::ZERO,
+        spin: D::Spin::ZERO,
         start_spin: D::Spin::ZERO,
-        // Velocities are those at the contact.
-        arm: 0.0,
+        radius: f64::INFINITY,
+        mass: f64::INFINITY,
     };
     if let Some(pose) = pose {
         (other.velocity, other.start_velocity) = pose.velocities(view.position[first] - normal * arm);
         (other.spin, other.start_spin) = (pose.rate.spin, pose.start_rate.spin);
     }
-    let mut meeting = meeting::<D, L>(view, first, arm, normal, overlap, &other)?;
+    let own = view.body::<L>(first);
+    let mut meeting = meeting::<D, L>(view, (&own, arm), (&other, 0.0), normal, overlap)?;
     meeting.effective_mass = view.mass[first];
     meeting.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
     Some((meeting, arm))
@@ -403,7 +438,8 @@ pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     let distance = arm.length();
     let overlap = view.radius[first] + view.radius[second] - distance;
     let met = if overlap > 0.0 && distance > 0.0 {
-        meet_grain::<D, L>(view, first, second, arm, distance)
+        let (own, other) = (&view.body::<L>(first), &view.body::<L>(second));
+        Pair { first, own, other, arm, distance }.meet::<L>(view)
     } else {
         None
     };

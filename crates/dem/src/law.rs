@@ -39,7 +39,7 @@ pub struct Meeting<D: Dim> {
     pub start_slip: D::Spin,
     /// The roll at the start of the step \[rad/s\].
     pub start_roll: D::Spin,
-    /// Mean spin about the normal \[rad/s\].
+    /// Mean spin about the normal at the start of the step \[rad/s\].
     pub twist: f64,
     /// Difference of the spins about the normal \[rad/s\]; only for laws that resist twisting.
     pub twisting: f64,
@@ -91,6 +91,12 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
 
     /// The law between two materials.
     fn between(properties: &PairProperties, tension: Tension) -> Self;
+    /// Whether the law reads `slip` and `roll` of a [`Meeting`], the motion across the contact in the
+    /// middle of the step as predicted. They are zero, and cost nothing, when no law of a
+    /// simulation does.
+    fn predicts(&self) -> bool {
+        true
+    }
     /// The load over one step; dissipation is told to the tally.
     fn load<const LEDGER: bool>(
         &self,

@@ -72,7 +72,8 @@ pub use law::{
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;
 pub use material::{
-    Elasticity, HertzImpact, Material, MaterialId, Materials, PairProperties, SetupError, Tension,
+    Elasticity, HertzImpact, Material, MaterialId, Materials, PairOverride, PairProperties, SetupError,
+    Tension,
 };
 pub use moving::WallMotion;
 pub use servo::Servo;

@@ -1,8 +1,10 @@
 //! Materials, and what two of them make of a contact.
 
 mod elasticity;
+mod pair;
 
 pub use elasticity::{Elasticity, HertzImpact};
+pub use pair::PairOverride;
 
 /// What a grain or wall is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,7 +172,7 @@ pub fn damping_for_restitution(restitution: f64, tension: Tension) -> f64 {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Materials {
     list: Vec<Material>,
-    overrides: Vec<((u8, u8), PairProperties)>,
+    overrides: Vec<((u8, u8), PairOverride)>,
 }
 
 /// Index of a material in [`Materials`].
@@ -195,11 +197,16 @@ impl Materials {
         Ok(MaterialId(index))
     }
 
-    /// States the contact between two materials instead of mixing it.
-    pub fn set_pair(&mut self, a: MaterialId, b: MaterialId, properties: PairProperties) {
+    /// States the contact between two materials, or what matters of it, instead of mixing it.
+    ///
+    /// # Errors
+    /// When a value is out of its range.
+    pub fn set_pair(&mut self, a: MaterialId, b: MaterialId, stated: PairOverride) -> Result<(), SetupError> {
+        stated.check()?;
         let key = (a.0.min(b.0), a.0.max(b.0));
         self.overrides.retain(|(pair, _)| *pair != key);
-        self.overrides.push((key, properties));
+        self.overrides.push((key, stated));
+        Ok(())
     }
 
     /// Number of materials.
@@ -234,7 +241,7 @@ impl Materials {
         Ok(())
     }
 
-    /// Changes the friction of one material \[-\]; stated pairs keep theirs.
+    /// Changes the friction of one material \[-\]; pairs whose friction is stated keep theirs.
     pub fn set_friction(&mut self, id: MaterialId, friction: f64) {
         self.list[id.0 as usize].friction = friction;
     }
@@ -242,8 +249,9 @@ impl Materials {
     /// The contact between two materials.
     pub fn pair(&self, a: usize, b: usize) -> PairProperties {
         let key = (a.min(b) as u8, a.max(b) as u8);
-        let stated = self.overrides.iter().find(|(pair, _)| *pair == key).map(|&(_, properties)| properties);
-        stated.unwrap_or_else(|| PairProperties::mix(&self.list[a], &self.list[b]))
+        let mixed = PairProperties::mix(&self.list[a], &self.list[b]);
+        let stated = self.overrides.iter().find(|(pair, _)| *pair == key);
+        stated.map_or(mixed, |(_, stated)| stated.over(mixed))
     }
 
     /// All pairs, each once.

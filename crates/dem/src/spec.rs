@@ -1,5 +1,9 @@
 //! What a scene says of this method (feature `serde`).
 
+mod pair;
+
+pub use pair::PairSpec;
+
 use crate::material::{Elasticity, Material, Tension};
 use crate::setup::{ContactModel, LeverArm, Options};
 use granular_core::units::{Density, Length, Pressure, Stiffness, Time};

@@ -11,6 +11,7 @@ mod flows;
 mod hertz;
 pub mod lattice;
 mod restitution;
+mod settling;
 pub mod speed;
 mod state;
 mod study;

@@ -35,10 +35,28 @@ const SLOW: f64 = 0.02;
 /// # Errors
 /// When the scene has no grading, or a run stops.
 pub fn friction(scene: &Scene, plan: &Plan) -> Result<MaterialFile, Failure> {
+    let scene = &with_own_contacts(scene);
     match scene.dimension {
         Dimension::Plane => calibrate::<D2>(scene, plan),
         Dimension::Space => calibrate::<D3>(scene, plan),
     }
+}
+
+/// What pairs state of contacts within one material becomes part of that material. Other pairs do
+/// not matter where one material is alone; those of unknown ones stay, to be refused.
+fn with_own_contacts(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let materials = &mut scene.materials;
+    scene.pairs.retain(|pair| {
+        if let [one, other] = pair.between.as_slice()
+            && one == other
+            && let Some(material) = materials.get_mut(one)
+        {
+            *material = pair.applied_to(*material);
+        }
+        pair.between.iter().any(|name| !materials.contains_key(name))
+    });
+    scene
 }
 
 /// One run: a seed, a stress over the modulus of the packing, and an inertial number; none to compress.

@@ -2,6 +2,8 @@
 
 mod bench;
 mod calibrate;
+mod plot;
+mod sweep;
 mod validate;
 
 use clap::{Args, Parser, Subcommand};
@@ -47,8 +49,12 @@ struct Common {
 enum Verb {
     /// Print a scene to start from.
     New {
-        /// Name of the template; all names by default.
+        /// Name of the template; the list of all by default.
+        #[arg(conflicts_with = "list")]
         template: Option<String>,
+        /// List the templates, one line each.
+        #[arg(long)]
+        list: bool,
     },
     /// Check a scene: limits, bounds, memory, run time, and what is left out. Runs nothing.
     Check {
@@ -75,11 +81,10 @@ enum Verb {
         /// Run folder.
         folder: PathBuf,
     },
-    /// Draw the figures of a run again.
-    Plot {
-        /// Run folder.
-        folder: PathBuf,
-    },
+    /// Run a grid of scenes and collect a table; the same command goes on where it was.
+    Sweep(sweep::Sweep),
+    /// Draw the figures of a run again, or a figure of a sweep.
+    Plot(plot::Plot),
     /// Compare the program with known answers; exit code 1 when a required one is missed.
     Validate(validate::Validate),
     /// Find what a continuum of the grains of a scene is like.
@@ -114,9 +119,9 @@ impl Command {
         match self.verb.execute(&self.common) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
-                // A failed validation has printed its rows, and a check its report, and they say
-                // what failed.
-                let reported = matches!(failure, Failure::Invalid(_))
+                // A failed validation has printed its rows, a check its report and a sweep its
+                // list, and they say what failed.
+                let reported = matches!(failure, Failure::Invalid(_) | Failure::Runs { .. })
                     || checks && matches!(failure, Failure::Refused(_));
                 if self.common.json && !reported {
                     print(&(pretty(&failure_json(&failure)) + "\n"));
@@ -132,7 +137,7 @@ impl Command {
 impl Verb {
     fn execute(self, common: &Common) -> Result<(), Failure> {
         match self {
-            Self::New { template } => new(template.as_deref()),
+            Self::New { template, list: _ } => new(common, template.as_deref()),
             Self::Check { scene, edits } => {
                 let report = check::check(&read(&scene, &edits)?)?;
                 show(common, &report.to_json(), || report.to_string());
@@ -150,14 +155,8 @@ impl Verb {
                 show(common, &result(&facts), || summary(&facts, &folder));
                 Ok(())
             }
-            Self::Plot { folder } => {
-                let paths = run::plot(&folder)?;
-                let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-                show(common, &json!(lines), || {
-                    lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
-                });
-                Ok(())
-            }
+            Self::Plot(verb) => verb.execute(common),
+            Self::Sweep(verb) => verb.execute(common),
             Self::Bench(verb) => verb.execute(common),
             Self::Calibrate(calibrate) => calibrate.execute(common),
             Self::Validate(verb) => verb.execute(common),
@@ -280,13 +279,19 @@ fn summary(facts: &Value, folder: &Path) -> String {
     )
 }
 
-fn new(template: Option<&str>) -> Result<(), Failure> {
+/// Prints a template, or lists all by the first line of each.
+fn new(common: &Common, template: Option<&str>) -> Result<(), Failure> {
     let templates = granular::TEMPLATES;
     let Some(name) = template else {
-        for (name, text) in templates {
-            let title = text.lines().next().unwrap_or_default().trim_start_matches("// ");
-            print(&format!("{name:<24} {title}\n"));
-        }
+        let titles = templates
+            .iter()
+            .map(|(name, text)| (*name, text.lines().next().unwrap_or_default().trim_start_matches("// ")));
+        let titles: Vec<(&str, &str)> = titles.collect();
+        let list: Vec<Value> =
+            titles.iter().map(|(name, title)| json!({ "name": name, "title": title })).collect();
+        show(common, &json!(list), || {
+            titles.iter().map(|(name, title)| format!("{name:<24} {title}\n")).collect()
+        });
         return Ok(());
     };
     match templates.iter().find(|(known, _)| *known == name) {
@@ -297,7 +302,8 @@ fn new(template: Option<&str>) -> Result<(), Failure> {
         None => {
             let known: Vec<&str> = templates.iter().map(|(name, _)| *name).collect();
             let known = known.join(", ");
-            Err(Failure::io("new", format!("there is no template `{name}`; allowed: {known}")))
+            let reason = format!("there is no template `{name}`; allowed: {known} (--list describes them)");
+            Err(Failure::io("new", reason))
         }
     }
 }

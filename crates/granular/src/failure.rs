@@ -29,6 +29,13 @@ pub enum Failure {
         /// How to resume.
         hint: String,
     },
+    /// Runs of a sweep failed: the exit code is that of the first of them.
+    Runs {
+        /// That exit code.
+        code: u8,
+        /// Which runs, and why.
+        reason: String,
+    },
     /// A gating row of a validation failed: exit code 1.
     Invalid(String),
 }
@@ -42,6 +49,7 @@ impl Failure {
             Self::Refused(_) => 3,
             Self::Stopped { .. } => 4,
             Self::Io(_) => 5,
+            Self::Runs { code, .. } => *code,
             Self::Interrupted { signal, .. } => 128 + (*signal as u8 & 0x7f),
         }
     }
@@ -70,6 +78,7 @@ impl fmt::Display for Failure {
             }
             Self::Refused(reasons) => write!(f, "refused: {}", reasons.join("\nrefused: ")),
             Self::Stopped { reason, hint } => write!(f, "stopped: {reason}\n  = help: {hint}"),
+            Self::Runs { reason, .. } => f.write_str(reason),
             Self::Io(reason) => write!(f, "error: {reason}"),
             Self::Interrupted { hint, .. } => write!(f, "interrupted: the state is saved\n  = help: {hint}"),
             Self::Invalid(reason) => write!(f, "invalid: {reason}"),

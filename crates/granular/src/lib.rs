@@ -15,6 +15,7 @@ mod progress;
 pub mod run;
 pub mod scene;
 pub mod scene_file;
+pub mod sweep;
 pub mod validate;
 mod voronoi;
 

@@ -14,7 +14,7 @@ use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, Length, Time};
-use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec};
+use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
 use granular_lbm::spec::LbmSpec;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,6 +37,9 @@ pub struct Scene {
     /// Materials of grains and walls, by names of your choice.
     #[serde(default)]
     pub materials: BTreeMap<String, MaterialSpec>,
+    /// Contacts between two materials that are given instead of mixed from both; none by default.
+    #[serde(default)]
+    pub pairs: Vec<PairSpec>,
     /// The grains, described apart from the method.
     #[serde(default)]
     pub sample: Option<Sample>,
@@ -405,7 +408,7 @@ impl End {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Change {
-    /// Friction of one material.
+    /// Friction of one material. Pairs whose friction is given keep it.
     Friction {
         /// Name of the material.
         material: String,

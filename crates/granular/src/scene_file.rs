@@ -33,6 +33,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
+pub use path::split_assignment;
 pub use problem::{Place, SceneProblem, Snippet};
 
 use edit::Edit;
@@ -125,6 +126,17 @@ impl SceneText {
             Found::Value { node, .. } => Some(node.span.clone()),
             Found::Missing { .. } => None,
         }
+    }
+
+    /// A hash (XXH3, 64 bits) of the text without blanks and comments.
+    pub fn content_hash(&self) -> u64 {
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        for token in tokens::tokens(&self.text) {
+            hash.update(&self.text.as_bytes()[token.span]);
+            // A byte that no UTF-8 text holds keeps tokens apart.
+            hash.update(&[0xff]);
+        }
+        hash.digest()
     }
 
     /// Line and column of a byte, from 1, in characters.

@@ -3,7 +3,7 @@
 
 use super::{Cell, Shift};
 use crate::contacts::Receipt;
-use crate::kernel::{Kernel, Owed, View, meet_other, push_of};
+use crate::kernel::{Kernel, Owed, Pair, View, push_of};
 use crate::law::ContactLaw;
 use crate::lists::{BlockList, spare};
 use granular_core::search::CellGrid;
@@ -345,8 +345,10 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     for axis in 0..D::N {
         rate += cell.edge_rate.columns[axis] * f64::from(pair.shift[axis]);
     }
-    let velocity = view.velocity[second] + rate;
-    let start_velocity = if L::TANGENTIAL { view.start_velocity[second] + rate } else { D::Vec::ZERO };
-    let (meeting, arms) = meet_other::<D, L>(view, first, second, arm, distance, (velocity, start_velocity))?;
+    let mut other = view.body::<L>(second);
+    other.velocity += rate;
+    other.start_velocity += rate;
+    let (meeting, arms) =
+        Pair { first, own: &view.body::<L>(first), other: &other, arm, distance }.meet::<L>(view)?;
     Some((meeting, arms, sum - distance))
 }

@@ -196,6 +196,10 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         }
     }
 
+    fn predicts(&self) -> bool {
+        self.damping_ratio > 0.0
+    }
+
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,

@@ -112,6 +112,10 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         }
     }
 
+    fn predicts(&self) -> bool {
+        self.damping_ratio > 0.0
+    }
+
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,

@@ -25,6 +25,10 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         Self { frictional: F::between(properties, tension), rolling_friction: properties.rolling_friction }
     }
 
+    fn predicts(&self) -> bool {
+        ContactLaw::<D>::predicts(&self.frictional)
+    }
+
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,
@@ -91,6 +95,10 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
             rolling: <Rolling<F> as ContactLaw<D>>::between(properties, tension),
             twisting_friction: properties.twisting_friction,
         }
+    }
+
+    fn predicts(&self) -> bool {
+        ContactLaw::<D>::predicts(&self.rolling)
     }
 
     #[inline(always)]

@@ -17,6 +17,7 @@ mod lists;
 mod memory;
 mod moving_walls;
 mod oblique;
+mod pairs;
 mod restart;
 mod sample;
 mod stability;

@@ -11,8 +11,6 @@ use granular_tessellate::{Diagram, Domain};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// Numbers of sites by default.
-pub const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 /// A timed window lasts at least this long.
 const WINDOW: Duration = Duration::from_millis(300);
 

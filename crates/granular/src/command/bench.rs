@@ -59,17 +59,23 @@ pub(super) enum Solver {
 
 #[derive(Args, Debug)]
 pub(super) struct Speed {
-    /// Numbers of grains or sites; fluids have boxes of their own. By default 3000, 13000 and 100000 grains, 1000 to
-    /// 1000000 sites.
-    #[arg(long, value_delimiter = ',')]
-    sizes: Vec<usize>,
+    /// Numbers of disks in a collapsing column.
+    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "3000,13000,100000", value_name = "LIST")]
+    disks: Vec<usize>,
+    /// Numbers of spheres that settle in a box.
+    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "50000", value_name = "LIST")]
+    spheres: Vec<usize>,
+    /// Numbers of sites of a tessellation.
+    #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000,1000000", value_name = "LIST")]
+    sites: Vec<usize>,
     /// Numbers of threads, each in a pool of its own.
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
     pools: Vec<usize>,
     /// Windows of one second; the median is shown.
     #[arg(long, default_value_t = 3, value_name = "N")]
     repeats: usize,
-    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r`.
+    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r` for disks, and
+    /// `x y z vx vy vz wx wy wz r` or `x y z r` for spheres.
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Write the states that were measured on to this folder.
@@ -97,21 +103,17 @@ impl Bench {
                 show(common, &json!(study), || format!("{study}{files}"));
             }
             Self::Speed { solver, flags } => {
-                let Speed { sizes, pools: threads, repeats, state, write_state } = flags;
-                let or = |sizes: Vec<usize>, default: &[usize]| {
-                    if sizes.is_empty() { default.to_vec() } else { sizes }
-                };
-                if let Solver::Tessellate = solver {
-                    let rates = tessellate::tessellate(&or(sizes, &tessellate::SIZES), repeats)?;
-                    show(common, &json!(rates), || tessellate::table(&rates));
-                    return Ok(());
-                }
+                let Speed { disks, spheres, sites, pools: threads, repeats, state, write_state } = flags;
                 let speeds = match solver {
-                    Solver::Dem => {
-                        let sizes = or(sizes, &[3_000, 13_000, 100_000]);
-                        speed::dem(&speed::Request { sizes, threads, repeats, state, write_state })?
+                    Solver::Tessellate => {
+                        let rates = tessellate::tessellate(&sites, repeats)?;
+                        show(common, &json!(rates), || tessellate::table(&rates));
+                        return Ok(());
                     }
-                    Solver::Lbm | Solver::Tessellate => lattice::lbm(&lattice::Request { threads, repeats })?,
+                    Solver::Dem => {
+                        speed::dem(&speed::Request { disks, spheres, threads, repeats, state, write_state })?
+                    }
+                    Solver::Lbm => lattice::lbm(&lattice::Request { threads, repeats })?,
                 };
                 show(common, &json!(speeds), || speed::table(&speeds));
             }

@@ -48,6 +48,7 @@ fn refuse_grains(scene: &Scene, name: &str, problems: &mut Problems) {
     let given = [
         ("sample", scene.sample.is_some()),
         ("materials", !scene.materials.is_empty()),
+        ("pairs", !scene.pairs.is_empty()),
         ("walls", !scene.walls.is_empty()),
     ];
     for (key, _) in given.into_iter().filter(|(_, is_given)| *is_given) {

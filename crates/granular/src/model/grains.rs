@@ -1,5 +1,6 @@
 //! Grains and walls for the discrete element method.
 
+mod pairs;
 mod stiffness;
 
 use super::boundaries::{self, Surroundings};
@@ -38,6 +39,7 @@ impl NamedMaterials {
             });
             named.ids.insert(name.clone(), added.ok());
         }
+        pairs::state(&scene.pairs, contact, &mut named, problems);
         named
     }
 

@@ -35,6 +35,13 @@ pub(super) fn parse_path(text: &str) -> Option<(Vec<String>, &str)> {
     }
 }
 
+/// The path and the value of an assignment such as `materials.glass.friction=0.3`, as they are written.
+pub fn split_assignment(text: &str) -> Option<(&str, &str)> {
+    let (_, rest) = parse_path(text)?;
+    let value = rest.strip_prefix('=')?;
+    Some((text[..text.len() - rest.len()].trim(), value.trim()))
+}
+
 /// A path as it is written in assignments.
 pub(super) fn write_path(segments: &[String]) -> String {
     let segments: Vec<String> = segments

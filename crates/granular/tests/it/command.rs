@@ -160,7 +160,10 @@ fn plot_draws_the_same_figures_again_and_info_tells() {
 #[test]
 fn templates_are_the_examples_and_pass_the_check() {
     let scratch = Scratch::new("new");
-    let list = scratch.granular(&["new"]).expect(0).out;
+    let list = scratch.granular(&["new", "--list"]).expect(0).out;
+    assert_eq!(scratch.granular(&["new"]).expect(0).out, list);
+    let json = scratch.granular(&["new", "--list", "--json"]).expect(0).json();
+    assert_eq!(json.as_array().unwrap().len(), list.lines().count());
     let examples: Vec<_> = fs::read_dir(workspace().join("examples"))
         .unwrap()
         .map(|entry| fs::read_to_string(entry.unwrap().path().join("scene.ron")).unwrap())

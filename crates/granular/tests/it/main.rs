@@ -11,6 +11,7 @@ mod command_disk;
 mod command_flow;
 mod command_interrupt;
 mod command_snapshots;
+mod command_sweep;
 mod scenes;
 mod stability;
 mod support;

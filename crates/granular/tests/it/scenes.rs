@@ -19,6 +19,7 @@ const SHORTENED: &[(&str, &[&str])] = &[
             "figures.1.times=[0]",
         ],
     ),
+    ("ch4_runout", &["sample.extent=Grains(120)", "stages.1.end=For(\"0.1 s\")"]),
     (
         "ch3_voronoi",
         &[

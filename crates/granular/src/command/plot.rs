@@ -1,0 +1,63 @@
+//! `granular plot`.
+
+use super::{Common, show};
+use clap::Args;
+use granular::failure::Failure;
+use granular::{run, sweep};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// What `granular plot` takes.
+#[derive(Args, Debug)]
+pub(super) struct Plot {
+    /// Folder of a run or of a sweep; several sweeps make one figure, in the folder of the first.
+    #[arg(required = true, value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+    /// Of a sweep: the axis along x, its first one by default; or a column of its table, of which each run has its own value.
+    #[arg(long, value_name = "AXIS")]
+    x: Option<String>,
+    /// Of a sweep: the number along y, a column of its table; `runout` by default.
+    #[arg(long, value_name = "COLUMN")]
+    y: Option<String>,
+    /// Of a sweep: the axis whose values have a curve each. Over all others the mean is taken.
+    #[arg(long, value_name = "AXIS")]
+    by: Option<String>,
+    /// Of a sweep: logarithmic axes.
+    #[arg(long)]
+    log: bool,
+    /// Of a sweep: fit a power law to each curve between these x, such as 4..10.
+    #[arg(long, value_name = "LOW..HIGH", value_parser = range)]
+    fit: Option<[f64; 2]>,
+    /// Of a sweep: a CSV file of curves from elsewhere, with rows of label, x and y under a head line.
+    #[arg(long = "reference", value_name = "FILE")]
+    references: Vec<PathBuf>,
+}
+
+impl Plot {
+    pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
+        let Self { folders, x, y, by, log, fit, references } = self;
+        let view = sweep::View { x, y, by, log, fit, references };
+        let runs: Vec<&PathBuf> = folders.iter().filter(|folder| !sweep::is_sweep(folder)).collect();
+        let paths = match runs.first() {
+            None => vec![sweep::plot(&folders, &view)?],
+            Some(run) if folders.len() == 1 && view == sweep::View::default() => run::plot(run)?,
+            Some(run) => {
+                let reason = "holds no sweep (no sweep.json); several folders, --x, --y, --by, --log, --fit and \
+                              --reference are for sweeps";
+                return Err(Failure::io(run.display(), reason));
+            }
+        };
+        let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        show(common, &json!(lines), || {
+            lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
+        });
+        Ok(())
+    }
+}
+
+/// Reads `4..10`.
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let ends = text.split_once("..").and_then(|(low, high)| Some([low.parse().ok()?, high.parse().ok()?]));
+    let ends = ends.filter(|[low, high]: &[f64; 2]| *low > 0.0 && low < high && high.is_finite());
+    ends.ok_or_else(|| "two numbers above zero are expected, the smaller first, such as 4..10".to_owned())
+}

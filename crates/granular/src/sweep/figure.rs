@@ -1,0 +1,328 @@
+//! A measured number over an axis of a sweep, as a figure.
+
+use crate::failure::Failure;
+use granular_io::figure::{Axis, Chart, Series, Style};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What to draw of a sweep.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// Axis of the sweep along x, or a number as for y, of which every run has its own; the first
+    /// axis by default.
+    pub x: Option<String>,
+    /// Metric, or `<table>:<column>`, along y; `runout` by default.
+    pub y: Option<String>,
+    /// Axis of the sweep whose values have a curve each. Over all others the mean is taken.
+    pub by: Option<String>,
+    /// Whether both axes are logarithmic.
+    pub log: bool,
+    /// Least and largest x between which a power law is fitted to each curve.
+    pub fit: Option<[f64; 2]>,
+    /// Files of curves from elsewhere: rows of label, x and y after a head line.
+    pub references: Vec<PathBuf>,
+}
+
+/// The sweep as it was collected.
+struct Collected {
+    path: PathBuf,
+    axes: Vec<String>,
+    runs: Vec<Value>,
+}
+
+/// Values at one x on one curve.
+type Group = (f64, Vec<f64>);
+/// Label and points of a curve from elsewhere.
+type Curve = (String, Vec<[f64; 2]>);
+
+/// Whether a folder holds a sweep.
+pub fn is_sweep(folder: &Path) -> bool {
+    folder.join("sweep.json").is_file()
+}
+
+/// Draws a measured number over an axis as `<y>.svg` and `.png` in the folder of the first of these
+/// sweeps; returns the path without ending.
+///
+/// At each value of an axis stands the mean over the runs that are done, with its standard error as a
+/// bar where there are several. Runs that are not done are left out, and a note says so.
+///
+/// # Errors
+/// When a folder is none of a sweep, there is no such axis or number, or a file cannot be read or
+/// written.
+pub fn plot(folders: &[PathBuf], view: &View) -> Result<PathBuf, Failure> {
+    let y = view.y.as_deref().unwrap_or("runout");
+    let mut curves = Vec::new();
+    let (mut counts, mut label_of_x) = (Counts::default(), None);
+    for folder in folders {
+        let sweep = Collected::read(folder)?;
+        let name = folder.file_name().filter(|_| folders.len() > 1).unwrap_or_default();
+        sweep.add_curves(&name.to_string_lossy(), y, view, &mut curves, &mut counts)?;
+        label_of_x.get_or_insert(sweep.along(view.x.as_deref())?.to_owned());
+    }
+    let x = label_of_x.unwrap_or_default();
+    let chart = chart([&x, y], view, curves, &counts)?;
+    let place = folders.first().map_or(Path::new("."), PathBuf::as_path);
+    let path = place.join(y.replace([':', ' ', '/', '[', ']'], "_").trim_end_matches('_'));
+    chart.figure().save(&path)?;
+    Ok(path)
+}
+
+/// What notes tell.
+#[derive(Default)]
+struct Counts {
+    runs: usize,
+    left_out: usize,
+    /// Most runs of which a mean was taken.
+    averaged: usize,
+}
+
+/// Label of a series, and its values by x.
+type Groups = (String, Vec<Group>);
+
+fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -> Result<Chart, Failure> {
+    let axis = |label: &str| if view.log { Axis::log(label) } else { Axis::linear(label) };
+    let mut chart = Chart::new("", axis(x), axis(y));
+    for (colour, (label, curve)) in references(view)?.into_iter().enumerate() {
+        chart = chart.with(Series::new(label, curve, Style::Dashed).colour((colour + curves.len()) % 7));
+    }
+    for (colour, (label, groups)) in curves.into_iter().enumerate() {
+        let label = if label.is_empty() { "this sweep".to_owned() } else { label };
+        let series = series(label.clone(), groups).colour(colour % 7);
+        if let Some(range) = view.fit {
+            let law = PowerLaw::of(&series.points, range).ok_or_else(|| {
+                Failure::io("--fit", format!("`{label}` has no three points in that range, all above zero"))
+            })?;
+            chart = chart.with(law.series(range).colour(colour % 7)).note(format!("{label}: {law}"));
+        }
+        chart = chart.with(series);
+    }
+    if counts.averaged > 1 {
+        chart = chart.note(format!("means over up to {} runs, bars: their standard error", counts.averaged));
+    }
+    if counts.left_out > 0 {
+        let Counts { runs, left_out, .. } = counts;
+        chart = chart.note(format!("{left_out} of {runs} runs have no value and are left out"));
+    }
+    Ok(chart)
+}
+
+impl Collected {
+    fn read(folder: &Path) -> Result<Self, Failure> {
+        let path = folder.join("sweep.json");
+        let text = std::fs::read_to_string(&path).map_err(|error| Failure::io(path.display(), error))?;
+        let facts: Value = serde_json::from_str(&text).map_err(|error| Failure::io(path.display(), error))?;
+        let list = |key: &str| facts[key].as_array().cloned().unwrap_or_default();
+        let axes = list("axes").iter().filter_map(Value::as_str).map(str::to_owned).collect();
+        Ok(Self { path, axes, runs: list("runs") })
+    }
+
+    /// Adds the curves of this sweep; their labels begin with its `name`.
+    fn add_curves(
+        &self,
+        name: &str,
+        y: &str,
+        view: &View,
+        curves: &mut Vec<Groups>,
+        counts: &mut Counts,
+    ) -> Result<(), Failure> {
+        let x = self.along(view.x.as_deref())?;
+        let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
+        let before = counts.left_out;
+        for run in &self.runs {
+            counts.runs += 1;
+            let (Some(value), Some(at)) = (run["measures"][y].as_f64(), self.place(run, x)?) else {
+                counts.left_out += 1;
+                continue;
+            };
+            let of_axis = by.map(|by| format!("{by} = {}", text(&run["values"][by])));
+            let parts = [name].into_iter().chain(of_axis.as_deref()).filter(|part| !part.is_empty());
+            let groups = entry(curves, parts.collect::<Vec<_>>().join(", "));
+            match groups.iter_mut().find(|(known, _)| *known == at) {
+                Some((_, values)) => {
+                    values.push(value);
+                    counts.averaged = counts.averaged.max(values.len());
+                }
+                None => groups.push((at, vec![value])),
+            }
+        }
+        if counts.left_out - before == self.runs.len() {
+            return Err(Failure::io("--y", self.no_such_number(y)));
+        }
+        Ok(())
+    }
+
+    /// The axis of this name.
+    fn axis<'a>(&self, name: &'a str, flag: &str) -> Result<&'a str, Failure> {
+        if self.axes.iter().any(|axis| axis == name) {
+            return Ok(name);
+        }
+        let axes = self.axes.join(", ");
+        Err(Failure::io(flag, format!("`{name}` is no axis of this sweep; allowed: {axes}")))
+    }
+
+    /// What is along x: an axis, or a number that runs have measured.
+    fn along<'a>(&'a self, name: Option<&'a str>) -> Result<&'a str, Failure> {
+        let name = name.or(self.axes.first().map(String::as_str)).unwrap_or_default();
+        if self.runs.iter().any(|run| run["measures"][name].is_number()) {
+            return Ok(name);
+        }
+        self.axis(name, "--x").map_err(|failure| match failure {
+            Failure::Io(reason) => Failure::Io(format!("{reason}, or a number as for --y")),
+            other => other,
+        })
+    }
+
+    /// Where a run stands along x.
+    fn place(&self, run: &Value, x: &str) -> Result<Option<f64>, Failure> {
+        if !self.axes.iter().any(|axis| axis == x) {
+            return Ok(run["measures"][x].as_f64());
+        }
+        let label = text(&run["values"][x]);
+        let reason = || format!("`{x}` is `{label}` in a run, which begins with no number");
+        number(label).map(Some).ok_or_else(|| Failure::io("--x", reason()))
+    }
+
+    fn no_such_number(&self, name: &str) -> String {
+        let mut names: BTreeMap<&str, ()> = BTreeMap::new();
+        for measures in self.runs.iter().filter_map(|run| run["measures"].as_object()) {
+            names.extend(measures.keys().map(|name| (name.as_str(), ())));
+        }
+        let names: Vec<&str> = names.into_keys().collect();
+        let place = self.path.display();
+        if names.is_empty() {
+            return format!("no run in {place} is done, so there is nothing to draw");
+        }
+        format!("no run in {place} has a number `{name}`; allowed: {}", names.join(", "))
+    }
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+/// The number with which a value begins: 68 of `68 mm`.
+fn number(label: &str) -> Option<f64> {
+    label.split_whitespace().next()?.parse().ok()
+}
+
+fn entry<T>(list: &mut Vec<(String, Vec<T>)>, label: String) -> &mut Vec<T> {
+    let at = list.iter().position(|(known, _)| *known == label).unwrap_or_else(|| {
+        list.push((label, Vec::new()));
+        list.len() - 1
+    });
+    &mut list[at].1
+}
+
+/// Means with the standard errors of them.
+fn series(label: String, mut groups: Vec<Group>) -> Series {
+    groups.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut points, mut errors) = (Vec::new(), Vec::new());
+    for (x, values) in groups {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        points.push([x, mean]);
+        errors.push(if count > 1.0 { (squares / (count - 1.0) / count).sqrt() } else { 0.0 });
+    }
+    if errors.iter().all(|&error| error == 0.0) {
+        return Series::new(label, points, Style::Markers);
+    }
+    Series::new(label, points, Style::ErrorBars(errors))
+}
+
+/// Curves of all reference files. A label may hold commas: the last two fields are the numbers.
+fn references(view: &View) -> Result<Vec<Curve>, Failure> {
+    let mut curves = Vec::new();
+    for path in &view.references {
+        let content = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;
+        let rows = content.lines().enumerate().skip(1);
+        for (k, row) in rows.filter(|(_, row)| !row.trim().is_empty() && !row.starts_with('#')) {
+            let mut fields = row.rsplitn(3, ',');
+            let (y, x, label) = (fields.next(), fields.next(), fields.next());
+            let number = |field: Option<&str>| field?.trim().parse::<f64>().ok();
+            let (Some(y), Some(x), Some(label)) = (number(y), number(x), label) else {
+                let reason = format!("`{row}`: a label, x and y are expected, with commas between");
+                return Err(Failure::io(format!("{}:{}", path.display(), k + 1), reason));
+            };
+            entry(&mut curves, label.trim().trim_matches('"').to_owned()).push([x, y]);
+        }
+    }
+    Ok(curves)
+}
+
+/// `y = factor x^exponent`, from least squares of the logarithms.
+struct PowerLaw {
+    factor: f64,
+    exponent: f64,
+    /// Standard error of the exponent.
+    error: f64,
+}
+
+impl PowerLaw {
+    /// The law of the points in a range of x; none when there are fewer than three, or one is not
+    /// above zero.
+    fn of(points: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<Self> {
+        let inside = points.iter().filter(|[x, _]| (low..=high).contains(x));
+        let logs: Vec<[f64; 2]> = inside.map(|[x, y]| [x.ln(), y.ln()]).collect();
+        if logs.len() < 3 || logs.iter().flatten().any(|log| !log.is_finite()) {
+            return None;
+        }
+        let count = logs.len() as f64;
+        let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
+        let means = [mean(0), mean(1)];
+        let sum = |a: usize, b: usize| {
+            logs.iter().map(|log| (log[a] - means[a]) * (log[b] - means[b])).sum::<f64>()
+        };
+        let exponent = sum(0, 1) / sum(0, 0);
+        let scatter = (sum(1, 1) - exponent * sum(0, 1)).max(0.0) / (count - 2.0);
+        let law = Self {
+            factor: (means[1] - exponent * means[0]).exp(),
+            exponent,
+            error: (scatter / sum(0, 0)).sqrt(),
+        };
+        law.exponent.is_finite().then_some(law)
+    }
+
+    fn series(&self, range: [f64; 2]) -> Series {
+        // Enough points that the curve looks smooth also on linear axes.
+        let x = |k: i32| range[0] * (range[1] / range[0]).powf(f64::from(k) / 40.0);
+        let points = (0..=40).map(|k| [x(k), self.factor * x(k).powf(self.exponent)]);
+        Series::new("", points.collect(), Style::Line)
+    }
+}
+
+impl std::fmt::Display for PowerLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { factor, exponent, error } = self;
+        write!(f, "fitted {factor:.4} x^{exponent:.3}, exponent ± {error:.3}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_is_found_again() {
+        let points: Vec<[f64; 2]> = (1..9).map(|k| [f64::from(k), 2.7 * f64::from(k).powf(0.6)]).collect();
+        let law = PowerLaw::of(&points, [2.0, 8.0]).unwrap();
+        assert!((law.factor - 2.7).abs() < 1e-12 && (law.exponent - 0.6).abs() < 1e-12, "{law}");
+        assert!(law.error < 1e-7, "{law}");
+        assert!(PowerLaw::of(&points, [7.0, 8.0]).is_none());
+        assert!(PowerLaw::of(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]], [1.0, 3.0]).is_none());
+        // By hand: logarithms 0, 1, 2 and 0, 2, 1 have slope 1/2, squares left 3/2, error sqrt(3/2/2).
+        let e = std::f64::consts::E;
+        let law = PowerLaw::of(&[[1.0, 1.0], [e, e * e], [e * e, e]], [0.5, 10.0]).unwrap();
+        assert!((law.exponent - 0.5).abs() < 1e-12 && (law.error - 0.75_f64.sqrt()).abs() < 1e-12, "{law}");
+    }
+
+    #[test]
+    fn means_have_the_standard_error_of_their_values() {
+        let found = series("a".to_owned(), vec![(2.0, vec![1.0, 3.0]), (1.0, vec![5.0])]);
+        assert_eq!(found.points, [[1.0, 5.0], [2.0, 2.0]]);
+        assert_eq!(found.style, Style::ErrorBars(vec![0.0, 1.0]));
+        assert_eq!(number("68 mm"), Some(68.0));
+        assert_eq!(number("Ballistic"), None);
+    }
+}

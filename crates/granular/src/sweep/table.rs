@@ -1,0 +1,76 @@
+//! The table of a sweep: one row per run, with its values, its end, and what it measured.
+
+use super::{Point, State};
+use crate::failure::Failure;
+use crate::folder::RunFolder;
+use crate::scene::{Output, Scene, Writer};
+use granular_io::write_atomically;
+use std::path::Path;
+
+/// Names and values, in the order in which they become columns.
+pub(super) type Measures = Vec<(String, String)>;
+
+/// What a run that is done measured: the metrics of its `run.json`, then the last row of each table,
+/// under `<table>:<column>`.
+pub(super) fn measures(out: &Path, point: &Point) -> Result<Measures, Failure> {
+    let Ok(run) = RunFolder::open(&out.join(&point.folder)) else { return Ok(Vec::new()) };
+    let facts = run.facts()?;
+    if facts["exit"] != "done" {
+        return Ok(Vec::new());
+    }
+    let metrics = facts["metrics"].as_object().into_iter().flatten();
+    let mut found: Measures = metrics.map(|(name, value)| (name.clone(), value.to_string())).collect();
+    let scene: Scene = point.text.parse()?;
+    for Output { write, .. } in &scene.outputs {
+        let Writer::Table { path, .. } = write else { continue };
+        let file = run.path().join(path);
+        let text = std::fs::read_to_string(&file).map_err(|error| Failure::io(file.display(), error))?;
+        let mut lines = text.lines();
+        // A header holds no commas but those between columns.
+        let (Some(head), Some(last)) = (lines.next(), lines.next_back()) else { continue };
+        let name = path.strip_suffix(".csv").unwrap_or(path);
+        let columns = head.split(',').map(|column| format!("{name}:{column}"));
+        found.extend(columns.zip(last.split(',').map(str::to_owned)));
+    }
+    Ok(found)
+}
+
+/// The whole table. What a run did not measure is an empty field.
+pub(super) fn text(axes: &[&str], runs: &[(&Point, State, Measures)]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in runs.iter().flat_map(|(.., measures)| measures) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let head = ["run"].into_iter().chain(axes.iter().copied()).chain(["exit"]);
+    let mut text = line(head.chain(names.iter().copied()));
+    for (point, state, measures) in runs {
+        let value = |name: &&str| {
+            let found = measures.iter().find(|(known, _)| known == name);
+            found.map_or("", |(_, value)| value.as_str())
+        };
+        let fields = [point.folder.as_str()].into_iter().chain(point.labels.iter().map(String::as_str));
+        text += &line(fields.chain([state.name()]).chain(names.iter().map(value)));
+    }
+    text
+}
+
+pub(super) fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    write_atomically(path, |file| file.write_all(text.as_bytes()))?;
+    Ok(())
+}
+
+fn line<'a>(fields: impl Iterator<Item = &'a str>) -> String {
+    let fields: Vec<String> = fields.map(quoted).collect();
+    fields.join(",") + "\n"
+}
+
+/// A field with commas, quotes or line breaks stands in quotes (RFC 4180).
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
