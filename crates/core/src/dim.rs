@@ -79,6 +79,8 @@ pub trait Spin: Linear {
     fn z(self) -> f64;
     /// From components about x, y and z; the plane takes z.
     fn of_components(components: [f64; 3]) -> Self;
+    /// Components about x, y and z; in the plane the first two are zero.
+    fn components(self) -> [f64; 3];
 }
 
 /// The plane or the space. Sealed: only [`D2`] and [`D3`].
@@ -102,6 +104,9 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
 
     /// Area of a disk \[m^2\] or volume of a sphere \[m^3\].
     fn ball_volume(radius: f64) -> f64;
+    /// Area \[m^2\] or volume \[m^3\] of the points of a ball about the origin that lie below `corner` \[m\] along
+    /// every axis; exact in the plane, to about 1e-11 of the ball in space.
+    fn ball_below(radius: f64, corner: Self::Vec) -> f64;
     /// Cross product of two vectors.
     fn cross(a: Self::Vec, b: Self::Vec) -> Self::Spin;
     /// Cross product `spin x arm`: the velocity at `arm` of a body that turns with `spin`.
@@ -160,6 +165,9 @@ impl Spin for f64 {
     fn of_components([_, _, z]: [f64; 3]) -> Self {
         z
     }
+    fn components(self) -> [f64; 3] {
+        [0.0, 0.0, self]
+    }
 }
 
 impl Spin for DVec3 {
@@ -172,6 +180,9 @@ impl Spin for DVec3 {
     }
     fn of_components(components: [f64; 3]) -> Self {
         components.into()
+    }
+    fn components(self) -> [f64; 3] {
+        self.into()
     }
 }
 
@@ -234,6 +245,9 @@ impl Dim for D2 {
     fn ball_volume(radius: f64) -> f64 {
         PI * radius * radius
     }
+    fn ball_below(radius: f64, corner: DVec2) -> f64 {
+        crate::ball::disk_below(radius, corner.x, corner.y)
+    }
     #[inline(always)]
     fn cross(a: DVec2, b: DVec2) -> f64 {
         a.x * b.y - a.y * b.x
@@ -283,6 +297,9 @@ impl Dim for D3 {
     #[inline(always)]
     fn ball_volume(radius: f64) -> f64 {
         4.0 / 3.0 * PI * radius * radius * radius
+    }
+    fn ball_below(radius: f64, corner: DVec3) -> f64 {
+        crate::ball::sphere_below(radius, corner.to_array())
     }
     #[inline(always)]
     fn cross(a: DVec3, b: DVec3) -> DVec3 {

@@ -19,6 +19,7 @@
 //! assert!(slip.is_finite());
 //! ```
 
+mod ball;
 pub mod blocks;
 pub mod dim;
 pub mod exchange;

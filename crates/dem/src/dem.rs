@@ -11,6 +11,7 @@ use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
 use crate::moving::{Movers, Reaction};
 use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::shaking::Shaken;
 use crate::traffic::Traffic;
 use crate::wall::{Shape, Wall};
 use crate::{lists, motion};
@@ -39,6 +40,7 @@ pub struct Dem<D: Dim> {
     pub(crate) clock: Clock,
     pub(crate) traffic: Traffic<D>,
     pub(crate) gravity: D::Vec,
+    pub(crate) shaken: Option<Shaken<D>>,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
     pub(crate) pairs: Box<dyn Pairs<D>>,
@@ -113,6 +115,7 @@ impl<D: Dim> Dem<D> {
             materials,
             walls,
             gravity,
+            shaken: None,
             options,
             grains,
             pairs,
@@ -352,8 +355,13 @@ impl<D: Dim> Dem<D> {
         if !self.movers.is_empty() {
             self.move_walls(dt);
         }
-        let (pairs, gravity) = (self.pairs.as_ref(), self.gravity);
+        let shaking = self.shake(dt);
+        let before = shaking.filter(|_| self.options.ledger).map(|_| self.momentum());
+        let (pairs, gravity) = (self.pairs.as_ref(), self.gravity + shaking.unwrap_or(D::Vec::ZERO));
         motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
+        if let (Some(shaking), Some(before)) = (shaking, before) {
+            self.injected += 0.5 * dt * shaking.dot(before + self.momentum());
+        }
         self.steps += 1;
         self.clock.step();
         let (losses, trouble) = self.pairs.outcome();

@@ -53,6 +53,7 @@ mod moving;
 mod pose;
 mod servo;
 mod setup;
+mod shaking;
 mod show;
 #[cfg(feature = "serde")]
 pub mod spec;
@@ -78,6 +79,7 @@ pub use material::{
 pub use moving::WallMotion;
 pub use servo::Servo;
 pub use setup::{ContactModel, LeverArm, Options, Setup};
+pub use shaking::Shaking;
 pub use show::Energies;
 pub use traffic::{Exchanged, Inlet, Outlet};
 pub use wall::{Shape, Wall};

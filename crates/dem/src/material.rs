@@ -179,6 +179,18 @@ pub struct Materials {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialId(pub(crate) u8);
 
+impl MaterialId {
+    /// The identifier of the material that was added after so many others.
+    pub fn of_index(index: u8) -> Self {
+        Self(index)
+    }
+
+    /// How many materials were added before this one.
+    pub fn index(self) -> usize {
+        self.0.into()
+    }
+}
+
 impl Materials {
     /// No materials.
     pub fn new() -> Self {

@@ -4,6 +4,7 @@ use crate::dem::Dem;
 use crate::grains::check_finite;
 use crate::ledger::Losses;
 use crate::material::MaterialId;
+use crate::shaking;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 impl<D: Dim> Dem<D> {
@@ -13,6 +14,7 @@ impl<D: Dim> Dem<D> {
         to.put_one("steps", self.steps);
         to.put_one("last step taken", self.last_dt);
         to.put("gravity", &[self.gravity]);
+        shaking::save(self.shaken.as_ref(), to);
         to.put("losses", &self.losses.to_array());
         to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
         if let Some(cell) = self.cell() {
@@ -54,6 +56,7 @@ impl<D: Dim> Dem<D> {
         self.steps = from.one("steps")?;
         self.last_dt = from.one("last step taken")?;
         self.gravity = from.array_of("gravity", 1)?[0];
+        self.shaken = shaking::restore(from)?;
         let losses: Vec<f64> = from.array_of("losses", 5)?;
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
         let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;

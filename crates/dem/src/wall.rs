@@ -32,6 +32,16 @@ pub enum Shape<D: Dim> {
         /// Upper corner \[m\].
         high: D::Vec,
     },
+    /// The curved surface of a cylinder, open at both ends, touched from both sides and at its rims; in the
+    /// plane two parallel segments.
+    Tube {
+        /// Middle of one end \[m\].
+        from: D::Vec,
+        /// Middle of the other end \[m\].
+        to: D::Vec,
+        /// Radius \[m\].
+        radius: f64,
+    },
     /// A surface of many parts, touched from both sides: a chain of segments, a mesh of triangles, or
     /// grains that are held.
     Facets(Arc<Facets<D>>),
@@ -39,7 +49,7 @@ pub enum Shape<D: Dim> {
 
 impl<D: Dim> Shape<D> {
     /// Distance of a point from the surface \[m\] and the unit normal from the surface to the
-    /// point. Inside a block the distance is zero and there is no direction.
+    /// point. Inside a block the distance is zero and there is no direction; nor is there one on the axis of a tube.
     #[inline]
     pub fn distance(&self, point: D::Vec) -> (f64, D::Vec) {
         let nearest = match *self {
@@ -51,6 +61,16 @@ impl<D: Dim> Shape<D> {
                 from + along * share.clamp(0.0, 1.0)
             }
             Self::Block { low, high } => point.max(low).min(high),
+            Self::Tube { from, to, radius } => {
+                let along = to - from;
+                let share = (point - from).dot(along) / along.length_squared();
+                let across = point - from - along * share;
+                let (reach, beyond) = (across.length(), share - share.clamp(0.0, 1.0));
+                if reach == 0.0 {
+                    return (radius.hypot(beyond * along.length()), D::Vec::ZERO);
+                }
+                point - along * beyond - across * (1.0 - radius / reach)
+            }
         };
         let arm = point - nearest;
         let distance = arm.length();
@@ -121,6 +141,27 @@ impl<D: Dim> Wall<D> {
         Ok(Self::of(name, Shape::Block { low, high }, material))
     }
 
+    /// The curved surface of a cylinder between the middles of its ends \[m\], with a radius \[m\]; open at both ends
+    /// and touched from both sides.
+    ///
+    /// # Errors
+    /// When the ends coincide, the radius is not positive, or something is not finite.
+    pub fn tube(
+        name: &str,
+        from: D::Vec,
+        to: D::Vec,
+        radius: f64,
+        material: MaterialId,
+    ) -> Result<Self, SetupError> {
+        for (what, value) in [("length", (to - from).length()), ("radius", radius)] {
+            if !(value.is_finite() && value > 0.0) {
+                let what = format!("{what} of wall `{name}`");
+                return Err(SetupError::new(what, value, "positive and finite"));
+            }
+        }
+        Ok(Self::of(name, Shape::Tube { from, to, radius }, material))
+    }
+
     /// A chain of segments through some points \[m\], touched from both sides and at its ends; `closed` joins the
     /// last point to the first.
     ///
@@ -181,8 +222,8 @@ impl<D: Dim> Wall<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::D2;
-    use granular_core::glam::DVec2;
+    use granular_core::glam::{DVec2, DVec3};
+    use granular_core::{D2, D3};
 
     #[test]
     fn distances_follow_the_nearest_point() {
@@ -196,5 +237,24 @@ mod tests {
         assert_eq!(plane.shape.distance(DVec2::new(3.0, -0.5)), (-0.5, DVec2::Y));
         assert!(Wall::<D2>::plane("p", DVec2::ZERO, DVec2::ZERO, material).is_err());
         assert!(Wall::<D2>::block("b", DVec2::ONE, DVec2::ZERO, material).is_err());
+    }
+
+    #[test]
+    fn a_tube_is_touched_inside_outside_and_at_its_rims() {
+        let (from, to) = (DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 4.0));
+        let tube = Wall::<D3>::tube("t", from, to, 2.0, MaterialId(0)).unwrap().shape;
+        let near = |at: [f64; 3], distance: f64, normal: [f64; 3]| {
+            let (found, direction) = tube.distance(at.into());
+            assert!((found - distance).abs() < 1e-14, "{at:?}: {found}");
+            assert!((direction - DVec3::from(normal)).length() < 1e-14, "{at:?}: {direction}");
+        };
+        near([2.5, 1.0, 1.0], 0.5, [-1.0, 0.0, 0.0]);
+        near([1.0, 3.25, 3.0], 0.25, [0.0, 1.0, 0.0]);
+        // Below the lower rim, and beyond the upper one.
+        near([3.0, 1.0, -0.5], 0.5, [0.0, 0.0, -1.0]);
+        near([3.3, 1.0, 4.4], 0.5, [0.6, 0.0, 0.8]);
+        near([1.0, 1.0, 2.0], 2.0, [0.0; 3]);
+        assert!(Wall::<D3>::tube("t", from, from, 2.0, MaterialId(0)).is_err());
+        assert!(Wall::<D3>::tube("t", from, to, 0.0, MaterialId(0)).is_err());
     }
 }

@@ -4,6 +4,7 @@ mod column;
 mod flow;
 mod fluid;
 mod map;
+mod radial;
 pub(crate) mod spectrum;
 mod voronoi;
 
@@ -50,8 +51,14 @@ pub fn draw(
             FigureSpec::Series { table, columns, .. } => {
                 series(scene, &table_of(folder, table)?, columns).figure()
             }
-            FigureSpec::Runout { table, stage, .. } => {
-                column::runout(scene, &table_of(folder, table)?, record(records, stage)?, column).figure()
+            FigureSpec::Runout { table, stage, laws, .. } => {
+                let table = table_of(folder, table)?;
+                column::runout(scene, &table, record(records, stage)?, (column, laws)).figure()
+            }
+            FigureSpec::RadialProfile { fields, stage, times, laws, .. } => {
+                let record = record(records, stage)?;
+                let (times, column) = (times.as_slice(), (column, laws.as_slice()));
+                radial::profile(scene, folder, (fields, times), record, column)?.figure()
             }
             FigureSpec::Energies { table, stage, .. } => {
                 let units = units(scene, record(records, stage)?, column);
@@ -117,7 +124,8 @@ pub(crate) fn metrics(
     }
     if let (Some(column), Some(release)) = (column, release_of(scene, records)) {
         add("aspect_ratio", Some(release.height / column.width));
-        add("runout", number_of(simulation, "front").map(|front| (front - column.width) / column.width));
+        let front = number_of(simulation, column.front());
+        add("runout", front.map(|front| (front - column.width) / column.width));
         add("final_height_over_width", number_of(simulation, "height").map(|height| height / column.width));
         add("duration_unit", gravity_time(scene, release.height));
     }

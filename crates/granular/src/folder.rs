@@ -12,7 +12,9 @@ const RUN_FILE: &str = "run.json";
 const SCENE_FILE: &str = "scene.ron";
 const SNAPSHOTS: &str = "snapshots";
 /// Names in a run folder that no output may take.
-pub(crate) const RESERVED: [&str; 3] = [RUN_FILE, SCENE_FILE, SNAPSHOTS];
+pub(crate) const RESERVED: [&str; 4] = [RUN_FILE, SCENE_FILE, SNAPSHOTS, SAMPLE_FILE];
+/// The sample from a file that a run started from.
+pub(crate) const SAMPLE_FILE: &str = "initial-sample.csv";
 
 /// A folder that holds the resolved scene, `run.json`, tables, fields, figures and snapshots.
 #[derive(Clone, Debug)]
@@ -116,6 +118,12 @@ impl RunFolder {
     pub fn set_facts(&self, facts: &Value) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(facts).expect("a JSON value can be written");
         self.write(RUN_FILE, &(text + "\n"))
+    }
+
+    /// Keeps the sample that the run starts from.
+    pub(crate) fn write_sample(&self, bytes: &[u8]) -> Result<(), Failure> {
+        write_atomically(&self.path.join(SAMPLE_FILE), |file| std::io::Write::write_all(file, bytes))?;
+        Ok(())
     }
 
     fn write(&self, name: &str, text: &str) -> Result<(), Failure> {

@@ -11,8 +11,10 @@ pub mod figures;
 pub mod folder;
 pub mod model;
 mod observers;
+mod probes;
 mod progress;
 pub mod run;
+mod sample_file;
 pub mod scene;
 pub mod scene_file;
 pub mod sweep;
@@ -26,4 +28,5 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("column-collapse", include_str!("../templates/column-collapse.ron")),
     ("cylinder", include_str!("../templates/cylinder.ron")),
     ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
+    ("sample", include_str!("../templates/sample.ron")),
 ];

@@ -5,18 +5,21 @@ mod cell;
 mod fluid;
 mod grains;
 mod outputs;
+mod region;
 mod sample;
 mod walls;
 
 pub(crate) use grains::NamedMaterials;
 pub use outputs::{all_shown, shown_on_grids};
 
+use crate::failure::Failure;
 use crate::scene::{Dimension, End, Scene, SolverSpec};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Measured, Unit};
 use granular_core::{D2, D3, Dim, Simulation, Solver, Vector};
 use granular_dem::MaterialId;
 use granular_lbm::{D2Q9, D3Q19};
+use std::path::Path;
 
 /// A scene that was checked and built.
 #[derive(Debug)]
@@ -36,12 +39,30 @@ pub struct Model {
 /// Size of a column \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnSize {
-    /// Width along x.
+    /// Width along x; the radius of a cylinder.
     pub width: f64,
     /// Height asked for; what comes to rest may differ.
     pub height: f64,
-    /// Depth along y in space.
+    /// Depth along y in space; none for a cylinder.
     pub depth: Option<f64>,
+    /// Whether it is a cylinder about the z axis.
+    pub round: Option<Round>,
+}
+
+/// How much of a cylinder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Round {
+    /// All of it.
+    Whole,
+    /// The half with y above 0.
+    Half,
+}
+
+impl ColumnSize {
+    /// The number that says how far it spread.
+    pub fn front(&self) -> &'static str {
+        if self.round.is_some() { "radial_front" } else { "front" }
+    }
 }
 
 /// A change of the solver between stages.
@@ -53,12 +74,25 @@ pub enum Action {
     Gravity(Vec<f64>),
     /// All velocities become zero.
     StopMotion,
+    /// A shaking begins, or ends.
+    Shake(Option<Shake>),
     /// A wall opens or closes.
     Wall(String, bool),
     /// A moving wall or an inlet starts or halts.
     Moving(String, bool),
     /// What drives the periodic cell.
     Cell(granular_dem::CellControl),
+}
+
+/// An oscillating acceleration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shake {
+    /// Largest acceleration, one component per axis \[m/s^2\].
+    pub acceleration: Vec<f64>,
+    /// Frequency at the start and at the end of a pass \[Hz\].
+    pub frequency: [f64; 2],
+    /// Duration of a pass \[s\].
+    pub pass: f64,
 }
 
 /// Collects problems by scene path.
@@ -126,6 +160,14 @@ pub fn apply(action: &Action, solver: &mut dyn Solver) {
     fluid::apply(action, solver);
 }
 
+/// Saves the grains as they are now, as a sample for other scenes.
+///
+/// # Errors
+/// When the file cannot be written.
+pub(crate) fn save_sample(scene: &Scene, model: &Model, path: &Path) -> Result<(), Failure> {
+    grains::save_sample(scene, model, path)
+}
+
 /// Checks that need neither dimension nor solver.
 fn check_frame(scene: &Scene, problems: &mut Problems) {
     if scene.version != 1 {
@@ -137,8 +179,15 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
     for (k, stage) in scene.stages.iter().enumerate() {
         let (key, time) = match stage.end {
             End::For(time) => ("end", time),
-            End::Quiet { within, .. } | End::Steady { within, .. } => ("end.within", within),
+            End::Quiet { within, .. } | End::Steady { within, .. } | End::Packed { within, .. } => {
+                ("end.within", within)
+            }
         };
+        if let End::Packed { solid_fraction, .. } = stage.end
+            && !(solid_fraction > 0.0 && solid_fraction < 1.0)
+        {
+            problems.add(format!("stages.{k}.end.solid_fraction"), solid_fraction, "above 0 and below 1", "");
+        }
         if let End::Quiet { kinetic_over_potential: ratio, .. } = stage.end
             && ratio <= 0.0
         {

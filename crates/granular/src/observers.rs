@@ -11,6 +11,8 @@ pub(crate) use profile::Line;
 pub(crate) use source::Grid;
 
 use crate::failure::Failure;
+use crate::model;
+use crate::probes;
 use crate::scene::{EverySpec, Output, Writer};
 use crate::voronoi;
 use granular_core::{
@@ -33,8 +35,7 @@ pub(crate) fn of_output(
     simulation: &Simulation,
     fresh: bool,
 ) -> Result<Scheduled, Failure> {
-    let mut shown = simulation.solver().shown();
-    shown.extend(voronoi::shown(simulation.solver()));
+    let shown = model::all_shown(simulation.solver());
     let every = match output.every {
         EverySpec::Time(time) => Every::Time(time.value()),
         EverySpec::Steps(steps) => Every::Steps(steps),
@@ -99,7 +100,7 @@ impl TableObserver {
 impl Observer for TableObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let mut numbers = Numbers::wanting(self.probes.iter().map(String::as_str));
-        simulation.solver().show(&mut numbers);
+        probes::show(simulation.solver(), &mut numbers);
         voronoi::show(simulation.solver(), self.free_surface, &mut numbers);
         let mut row = vec![simulation.clock().time()];
         row.extend(self.probes.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
@@ -268,6 +269,33 @@ impl Observer for Rest {
     }
 }
 
+/// Looks within the longest time of a stage that ends by density.
+const DENSITY_LOOKS: f64 = 400.0;
+
+/// Ends a stage when the grains are packed densely enough.
+pub(crate) struct Packed {
+    solid_fraction: f64,
+    reached: Arc<AtomicBool>,
+}
+
+impl Packed {
+    /// Watches from the start of a stage; raises the flag when it ends it.
+    pub(crate) fn scheduled(solid_fraction: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
+        let packed = Self { solid_fraction, reached };
+        Scheduled::new(END_OF_STAGE, Every::Time(within / DENSITY_LOOKS), Box::new(packed))
+    }
+}
+
+impl Observer for Packed {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        if number_of(simulation, "solid_fraction").is_some_and(|found| found >= self.solid_fraction) {
+            self.reached.store(true, Ordering::Relaxed);
+            return Ok(Flow::Stop);
+        }
+        Ok(Flow::Continue)
+    }
+}
+
 /// Stops the run loop when a snapshot is due; the loop takes it and goes on.
 pub(crate) struct SnapshotTimer {
     /// Step of the snapshot before, or of the start: there must be something new to save, or a
@@ -291,6 +319,6 @@ impl Observer for SnapshotTimer {
 /// One number that the solver shows.
 pub(crate) fn number_of(simulation: &Simulation, name: &str) -> Option<f64> {
     let mut numbers = Numbers::wanting([name]);
-    simulation.solver().show(&mut numbers);
+    probes::show(simulation.solver(), &mut numbers);
     numbers.get(name)
 }

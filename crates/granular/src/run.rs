@@ -2,11 +2,11 @@
 
 use crate::check;
 use crate::failure::Failure;
-use crate::folder::{RunFolder, provenance};
+use crate::folder::{RunFolder, SAMPLE_FILE, provenance};
 use crate::model::{self, Model};
-use crate::observers::{self, END_OF_STAGE, Rest, SnapshotTimer, Steady};
+use crate::observers::{self, END_OF_STAGE, Packed, Rest, SnapshotTimer, Steady};
 use crate::progress;
-use crate::scene::{End, Scene};
+use crate::scene::{End, Sample, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
 use granular_core::{Ending, Scheduled, Section, Simulation};
@@ -96,7 +96,20 @@ pub fn run(
     if !problems.is_empty() {
         return Err(check::refusal(text.name(), &problems));
     }
+    let mut text = text.clone();
+    let sample = match &scene.sample {
+        // The folder holds all that the run needs.
+        Some(Sample::File { path, .. }) => {
+            let bytes = std::fs::read(scene.folder.join(path)).map_err(|error| Failure::io(path, error))?;
+            text.set(&format!("sample.path=\"{SAMPLE_FILE}\""))?;
+            Some(bytes)
+        }
+        _ => None,
+    };
     let folder = RunFolder::create(out, text.text(), force)?;
+    if let Some(bytes) = sample {
+        folder.write_sample(&bytes)?;
+    }
     Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start()
 }
 
@@ -226,7 +239,9 @@ impl<'a> Session<'a> {
         let longest = stage.end.longest();
         let quiet_flag = match stage.end {
             End::For(_) => None,
-            End::Quiet { .. } | End::Steady { .. } => Some(Arc::new(AtomicBool::new(false))),
+            End::Quiet { .. } | End::Steady { .. } | End::Packed { .. } => {
+                Some(Arc::new(AtomicBool::new(false)))
+            }
         };
         let mut extra = self.stage_observers(index, longest, quiet_flag.as_ref())?;
         let ended = loop {
@@ -243,7 +258,11 @@ impl<'a> Session<'a> {
                 // Rest goes first: whether a snapshot is due at the same step is a matter of the
                 // wall clock, and must not decide how long the stage lasts.
                 Ending::Stopped if quiet_flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) => {
-                    break if let End::Steady { .. } = stage.end { "steady" } else { "at rest" };
+                    break match stage.end {
+                        End::Steady { .. } => "steady",
+                        End::Packed { .. } => "packed",
+                        _ => "at rest",
+                    };
                 }
                 Ending::Stopped => {
                     self.save_with(index, &extra)?;
@@ -254,6 +273,7 @@ impl<'a> Session<'a> {
                 Ending::Finished if quiet_flag.is_some() => {
                     break match stage.end {
                         End::Steady { .. } => "not steady within the time",
+                        End::Packed { .. } => "not packed within the time",
                         _ => "not at rest within the time",
                     };
                 }
@@ -261,6 +281,9 @@ impl<'a> Session<'a> {
             }
         };
         finish_all(&mut extra, &self.model.simulation)?;
+        if let Some(path) = &stage.save {
+            model::save_sample(self.scene, &self.model, &self.folder.path().join(path))?;
+        }
         self.end_stage(ended);
         Ok(())
     }
@@ -294,6 +317,9 @@ impl<'a> Session<'a> {
             End::For(_) => None,
             End::Quiet { kinetic_over_potential, within } => {
                 Some(Rest::scheduled(kinetic_over_potential, within.value(), flag.clone()))
+            }
+            End::Packed { solid_fraction, within } => {
+                Some(Packed::scheduled(solid_fraction, within.value(), flag.clone()))
             }
             End::Steady { change, within } => Some(Steady::scheduled(change, within.value(), flag.clone())),
         });

@@ -7,15 +7,17 @@ pub mod cell;
 pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
+pub mod region;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
-use granular_core::units::{Acceleration, Length, Time};
+use granular_core::units::{Acceleration, Frequency, Length, Time};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
 use granular_lbm::spec::LbmSpec;
+use region::RegionSpec;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -73,6 +75,9 @@ pub struct Scene {
     /// taken at the start of every stage and on interruption.
     #[serde(default = "default_snapshot_interval")]
     pub snapshot_every: Time,
+    /// Folder of the scene file, from which paths of files to read count.
+    #[serde(skip)]
+    pub folder: std::path::PathBuf,
 }
 
 fn default_snapshot_interval() -> Time {
@@ -120,6 +125,25 @@ pub enum Sample {
         #[serde(default = "default_seed")]
         seed: u64,
     },
+    /// A cylinder, or half of one, that stands on z = 0 about the axis x = y = 0; in space only.
+    Cylinder {
+        /// How large it is: by its number of grains or by its width, the diameter.
+        extent: Extent,
+        /// Height over radius before anything moves.
+        aspect_ratio: f64,
+        /// Whether it is the half with y above 0.
+        #[serde(default)]
+        half: bool,
+        /// Sizes of the grains.
+        grading: GradingSpec,
+        /// Name of the material of the grains.
+        material: String,
+        /// How the grains are placed: Loose or Hexagonal.
+        packing: PackingSpec,
+        /// Random seed of sizes and places: the same seed gives the same sample.
+        #[serde(default = "default_seed")]
+        seed: u64,
+    },
     /// Grains scattered in the periodic cell of the scene, which becomes a cube or square, to be compressed by a stage.
     Cell {
         /// Number of grains.
@@ -136,6 +160,21 @@ pub enum Sample {
     },
     /// Grains one by one.
     Grains(Vec<GrainSpec>),
+    /// Grains that a stage of another scene saved; their materials must be materials of this scene.
+    File {
+        /// The file; its path counts from the folder of the scene.
+        path: String,
+        /// Only grains wholly inside all these regions are taken; all by default. A Box that the shift brings
+        /// to the origin makes a column, beside which a Gate can stand.
+        #[serde(default)]
+        cut: Vec<RegionSpec>,
+        /// How far the grains are shifted after the cut, one length per axis; not at all by default.
+        #[serde(default)]
+        shift: Vec<Length>,
+        /// Whether the grains move as they did; at rest by default.
+        #[serde(default)]
+        moving: bool,
+    },
 }
 
 fn default_seed() -> u64 {
@@ -208,14 +247,14 @@ pub enum WallSpec {
         /// Name of the material.
         material: String,
     },
-    /// The plane right of a column, called `gate`, which is out of the way from a stage on.
+    /// The plane right of a column, or the tube around a cylinder, called `gate`, which is out of the way from a stage on.
     Gate {
         /// Name of the material.
         material: String,
         /// Name of the stage at whose start the gate opens.
         opens: String,
     },
-    /// Planes before and behind a column in space, called `front` and `back`.
+    /// Planes before and behind a column in space, called `front` and `back`; beside half a cylinder its flat face, `front`.
     Sides {
         /// Name of the material.
         material: String,
@@ -262,6 +301,25 @@ pub enum WallSpec {
         low: Vec<Length>,
         /// Corner with the highest coordinates.
         high: Vec<Length>,
+        /// Name of the material.
+        material: String,
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        #[serde(default)]
+        opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
+    },
+    /// The curved surface of a cylinder, open at both ends, with grains on both sides; in the plane two parallel segments.
+    Tube {
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
+        name: String,
+        /// Middle of one end.
+        from: Vec<Length>,
+        /// Middle of the other end.
+        to: Vec<Length>,
+        /// Radius.
+        radius: Length,
         /// Name of the material.
         material: String,
         /// Name of the stage at whose start it goes out of the way; it stays by default.
@@ -369,6 +427,9 @@ pub struct Stage {
     /// Step during this stage; by default that of the solver.
     #[serde(default)]
     pub time_step: Option<Time>,
+    /// File in the run folder to which the grains are saved at the end of the stage, as a sample for other scenes.
+    #[serde(default)]
+    pub save: Option<String>,
 }
 
 /// End of a stage.
@@ -385,6 +446,13 @@ pub enum End {
         /// of it.
         within: Time,
     },
+    /// When the bulk of the grains is packed so densely.
+    Packed {
+        /// Solid fraction of the bulk, above 0 and below 1.
+        solid_fraction: f64,
+        /// Time after which the stage ends in any case.
+        within: Time,
+    },
     /// When the flow of a fluid has become steady.
     Steady {
         /// Relative change of its kinetic energy over a twentieth of `within` below which it is steady, such as 1e-6.
@@ -399,7 +467,9 @@ impl End {
     pub fn longest(&self) -> f64 {
         match self {
             Self::For(time) => time.value(),
-            Self::Quiet { within, .. } | Self::Steady { within, .. } => within.value(),
+            Self::Quiet { within, .. } | Self::Steady { within, .. } | Self::Packed { within, .. } => {
+                within.value()
+            }
         }
     }
 }
@@ -419,6 +489,18 @@ pub enum Change {
     Gravity(Vec<Acceleration>),
     /// All velocities and spins become zero.
     StopMotion,
+    /// Shaking, during this stage only: an acceleration beside gravity that oscillates, as on a table that is shaken
+    /// and seen from it.
+    Shake {
+        /// Largest acceleration, one component per axis.
+        acceleration: Vec<Acceleration>,
+        /// Frequency at the start of a pass.
+        from: Frequency,
+        /// Frequency at the end of a pass.
+        to: Frequency,
+        /// Duration of a pass; passes follow each other.
+        pass: Time,
+    },
     /// The wall of this name, such as `gate`, goes out of the way.
     Open(String),
     /// The wall of this name comes back.

@@ -27,6 +27,7 @@ mod incline;
 mod lattices;
 mod laws;
 mod oblique;
+mod packing;
 mod packing_density;
 pub(crate) mod parallel;
 mod plane;
@@ -36,6 +37,7 @@ mod rolling;
 mod row;
 mod shear;
 pub mod stability;
+mod stages;
 pub(crate) mod strike;
 mod table;
 mod tessellation;
@@ -83,6 +85,7 @@ pub const CASES: &[Case] = &[
     Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
+    Case { name: "packing_densities", about: "samples of a wanted density", run: packing::densities },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case {
         name: "wall_forces",

@@ -61,6 +61,7 @@
 mod ballistic;
 mod bands;
 mod beta;
+mod bulk;
 mod error;
 mod grading;
 mod lattice;
@@ -71,6 +72,7 @@ mod scattered;
 pub use ballistic::{Deposit, Sides, Support, ballistic};
 pub use bands::{BAND_OVER_MEDIAN_DIAMETER, Bands, homogeneity, solid_fraction_bands};
 pub use beta::regularised_incomplete_beta;
+pub use bulk::Bulk;
 pub use error::{GradingError, PackingError};
 pub use grading::{Grading, finer_by_volume, median_diameter};
 pub use lattice::Lattice;

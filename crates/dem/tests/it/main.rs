@@ -20,6 +20,7 @@ mod oblique;
 mod pairs;
 mod restart;
 mod sample;
+mod shaking;
 mod stability;
 mod surfaces;
 mod traffic;

@@ -67,8 +67,8 @@ fn cell_scene(scene: &Scene, plan: &Plan, seed: u64, solid_fraction: f64) -> Res
     materials.retain(|name, _| name == material);
     materials.values_mut().for_each(|spec| spec.friction = 0.0);
     let periodic = vec![true; if scene.dimension == crate::scene::Dimension::Plane { 2 } else { 3 }];
-    let run =
-        Stage { name: "run".to_owned(), end: End::For(1.0.into()), changes: Vec::new(), time_step: None };
+    let (name, end) = ("run".to_owned(), End::For(1.0.into()));
+    let run = Stage { name, end, changes: Vec::new(), time_step: None, save: None };
     Ok(Scene {
         gravity: Vec::new(),
         materials,

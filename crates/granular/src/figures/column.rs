@@ -4,6 +4,7 @@ use super::{Units, title};
 use crate::model::ColumnSize;
 use crate::run::StageRecord;
 use crate::scene::Scene;
+use crate::scene::outputs::LawSpec;
 use granular_io::Table;
 use granular_io::figure::{Axis, Chart, Panels, Series, Style};
 
@@ -12,10 +13,12 @@ pub(super) fn runout(
     scene: &Scene,
     table: &Table,
     release: &StageRecord,
-    column: Option<ColumnSize>,
+    (column, laws): (Option<ColumnSize>, &[LawSpec]),
 ) -> Panels {
     let units = super::units(scene, release, column);
     let width = column.map_or(release.front, |column| column.width);
+    let front = column.map_or("front", |column| column.front());
+    let aspect = release.height / width;
     let over_time = |name: &str, map: &dyn Fn(f64) -> f64| {
         let values = table.column(name).unwrap_or_default();
         let time = table.column("time").unwrap_or_default();
@@ -23,21 +26,34 @@ pub(super) fn runout(
         pairs.map(|(t, value)| [(t - units.start) / units.time, map(value)]).collect::<Vec<_>>()
     };
     // Grains at the front touch the main mass off and on; the median shows where it is.
-    let run_out = running_median(&over_time("front", &|front| (front - width) / width));
+    let run_out = running_median(&over_time(front, &|front| (front - width) / width));
     let height = running_median(&over_time("height", &|height| height / width));
     let last = |points: &[[f64; 2]]| points.last().map_or(f64::NAN, |point| point[1]);
-    let charts = vec![
-        Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear("(L − L₀) / L₀ [-]"))
+    let ends = run_out.first().zip(run_out.last()).map_or([0.0; 2], |(first, last)| [first[0], last[0]]);
+    let [spread, high, unit] = if front == "front" {
+        ["(L − L₀) / L₀ [-]", "H / L₀ [-]", "L₀"]
+    } else {
+        ["(r − r₀) / r₀ [-]", "H / r₀ [-]", "r₀"]
+    };
+    let mut charts = vec![
+        Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear(spread))
             .note(format!(
-                "a = {:.2}; final run-out {:.3}; running median of {MEDIAN} rows",
-                release.height / width,
+                "a = {aspect:.2}; final run-out {:.3}; running median of {MEDIAN} rows",
                 last(&run_out)
             ))
-            .with(Series::new("", run_out, Style::Line)),
-        Chart::new("Height", Axis::linear(units.time_label()), Axis::linear("H / L₀ [-]"))
-            .note(format!("final height {:.3} L₀", last(&height)))
-            .with(Series::new("", height, Style::Line).colour(1)),
+            .with(Series::new(if laws.is_empty() { "" } else { "this run" }, run_out, Style::Line)),
+        Chart::new("Height", Axis::linear(units.time_label()), Axis::linear(high))
+            .note(format!("final height {:.3} {unit}", last(&height)))
+            .with(Series::new(if laws.is_empty() { "" } else { "this run" }, height, Style::Line).colour(1)),
     ];
+    for (chart, of_height) in charts.iter_mut().zip([false, true]) {
+        for law in laws.iter().filter(|law| law.of_height == of_height) {
+            let value = law.at(aspect);
+            let level = ends.map(|time| [time, value]).to_vec();
+            let label = format!("{}: {value:.2}", law.label);
+            *chart = std::mem::take(chart).with(Series::new(label, level, Style::Dashed).colour(7));
+        }
+    }
     Panels::new(title(scene, "run-out and height"), 2, charts)
 }
 

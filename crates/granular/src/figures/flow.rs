@@ -98,18 +98,24 @@ pub(super) fn axes(scene: &Scene) -> [String; 2] {
 /// Floor and left wall, as far as grains reach in any panel.
 pub(super) fn add_walls(scene: &Scene, panels: &mut [GrainPanel]) {
     let ends = panels.iter().flat_map(|panel| {
-        let grains = panel.grains.iter().map(|g| [g.center[0] + g.radius, g.center[1] + g.radius]);
+        let grains = panel
+            .grains
+            .iter()
+            .flat_map(|g| [[g.center[0] - g.radius, 0.0], [g.center[0] + g.radius, g.center[1] + g.radius]]);
         let chains = panel.chains.iter().flat_map(|chain| [chain.from, chain.to]);
         grains.chain(chains).collect::<Vec<_>>()
     });
-    let [right, top] = ends.fold([0.0_f64; 2], |[x, y], [a, b]| [x.max(a), y.max(b)]);
+    let [left, right, top] = ends.fold([0.0_f64; 3], |[x0, x1, y], [a, b]| [x0.min(a), x1.max(a), y.max(b)]);
+    // Beside a wall at x = 0 grains overlap it a little.
+    let left =
+        if scene.walls.iter().any(|wall| matches!(wall, WallSpec::Left { .. })) { 0.0 } else { 1.02 * left };
     let point = |at: &[granular_core::units::Length]| {
         in_plane(scene, std::array::from_fn(|axis| at.get(axis).map_or(0.0, |x| x.value())))
     };
     let mut lines = Vec::new();
     for wall in &scene.walls {
         match wall {
-            WallSpec::Floor { .. } => lines.push([[0.0, 0.0], [1.02 * right, 0.0]]),
+            WallSpec::Floor { .. } => lines.push([[left, 0.0], [1.02 * right, 0.0]]),
             WallSpec::Left { .. } => lines.push([[0.0, 0.0], [0.0, 1.05 * top]]),
             WallSpec::Segment { from, to, opens: None, .. } => lines.push([point(from), point(to)]),
             WallSpec::Chain { points, closed, .. } => {

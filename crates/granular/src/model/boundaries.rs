@@ -25,6 +25,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) materials: &'a NamedMaterials,
     /// Mass of all grains \[kg\].
     pub(super) grains_mass: f64,
+    /// Highest point of all grains \[m\].
+    pub(super) top: f64,
 }
 
 /// Gives a wall its motion, if that can be.

@@ -35,7 +35,7 @@ pub(super) fn build<L: Lattice<Q>, const Q: usize>(
         PrecisionSpec::Single => simulation::<L, f32, Q>(name, fluid),
     };
     let simulation = simulation.map_err(|problem| vec![*problem])?;
-    outputs::check_names(scene, simulation.solver(), &mut problems);
+    outputs::check_names(scene, simulation.solver(), "front", &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
     }

@@ -5,15 +5,18 @@ mod stiffness;
 
 use super::boundaries::{self, Surroundings};
 use super::walls::{self, Beside};
-use super::{Action, Model, Problems, nearest, outputs, sample};
-use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
+use super::{Action, Model, Problems, Shake, nearest, outputs, sample};
+use crate::failure::Failure;
+use crate::sample_file::SavedSample;
+use crate::scene::{Change, FigureSpec, Sample, Scene, Stage, Writer};
 use crate::scene_file::SceneProblem;
 use granular_core::units::Acceleration;
 use granular_core::{D2, D3, Dim, Simulation, Vector};
 use granular_dem::spec::DemSpec;
-use granular_dem::{Dem, MaterialId, Materials, Setup, Wall};
+use granular_dem::{Dem, MaterialId, Materials, Setup, Shaking, Wall};
 use std::any::Any;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Materials of a scene, by name.
 #[derive(Debug, Default)]
@@ -77,7 +80,7 @@ pub(super) fn build<D: Dim>(
     };
     let mut materials = NamedMaterials::of(scene, spec, D::N == 2, &mut problems);
     let sample = match &scene.sample {
-        Some(sample) => sample::grains::<D>(sample, &materials, &mut problems),
+        Some(sample) => sample::grains::<D>(sample, &scene.folder, &materials, &mut problems),
         // Grains may all come in through inlets.
         None if !scene.inlets.is_empty() => {
             Some(sample::BuiltSample { grains: Vec::new(), column: None, cell: None })
@@ -93,14 +96,20 @@ pub(super) fn build<D: Dim>(
     let column = sample.as_ref().and_then(|sample| sample.column);
     // A column that cannot be built has been blamed already; the walls beside it are not.
     let beside = match (&sample, &scene.sample) {
-        (None, Some(Sample::Column { .. }) | None) => Beside::Unknown,
+        (None, Some(Sample::Column { .. } | Sample::Cylinder { .. } | Sample::File { .. }) | None) => {
+            Beside::Unknown
+        }
         _ => column.map_or(Beside::Nothing, Beside::Column),
     };
     let mass = |grain: &granular_dem::Grain<D>| {
         materials.list.get(grain.material).density * D::ball_volume(grain.radius)
     };
-    let grains_mass = sample.iter().flat_map(|sample| &sample.grains).map(mass).sum();
-    let around = Surroundings { scene, materials: &materials, grains_mass };
+    let all = || sample.iter().flat_map(|sample| &sample.grains);
+    let (grains_mass, top) = (
+        all().map(mass).sum(),
+        all().map(|grain| grain.position.component(D::UP) + grain.radius).fold(0.0, f64::max),
+    );
+    let around = Surroundings { scene, materials: &materials, grains_mass, top };
     let walls = walls::walls::<D>(&scene.walls, beside, &around, &mut problems);
     let of_inlets = inlet_materials(scene, &materials, &mut problems);
     let cell = super::cell::cell::<D>(scene, sample.as_ref(), &mut problems);
@@ -125,7 +134,7 @@ pub(super) fn build<D: Dim>(
         dem.set_cell(cell)
             .map_err(|error| vec![SceneProblem::at_path("cell", error.to_string(), error.allowed, "")])?;
     }
-    outputs::check_names(scene, &dem, &mut problems);
+    outputs::check_names(scene, &dem, column.map_or("front", |column| column.front()), &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);
     }
@@ -232,9 +241,24 @@ fn actions<D: Dim>(
     for (k, stage) in scene.stages.iter().enumerate() {
         let opened = openings.iter().filter(|(.., at)| *at == stage.name);
         let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
+        // A shaking is over with its stage.
+        let shakes =
+            |stage: &Stage| stage.changes.iter().any(|change| matches!(change, Change::Shake { .. }));
+        if k > 0 && shakes(&scene.stages[k - 1]) {
+            list.push(Action::Shake(None));
+        }
         for (c, change) in stage.changes.iter().enumerate() {
             let path = format!("stages.{k}.changes.{c}");
             list.extend(match change {
+                Change::Shake { .. } if scene.cell.is_some() => {
+                    problems.add(
+                        path,
+                        "Shake",
+                        "a scene without a cell",
+                        "gravity and walls shake a box, not a cell",
+                    );
+                    None
+                }
                 Change::Cell(change) => {
                     let control = super::cell::control::<D>(&path, change, scene.cell.as_ref(), problems);
                     control.map(Action::Cell)
@@ -265,6 +289,17 @@ fn action<D: Dim>(
             Action::Gravity(values.iter().map(|value: &Acceleration| value.value()).collect())
         }
         Change::StopMotion => Action::StopMotion,
+        Change::Shake { acceleration, from, to, pass } => {
+            let frequency = [from.value(), to.value()];
+            for (key, value) in [("from", frequency[0]), ("to", frequency[1]), ("pass", pass.value())] {
+                if value <= 0.0 {
+                    problems.add(format!("{path}.{key}"), value, "above 0", "");
+                }
+            }
+            problems.vector::<D, _>(&format!("{path}.acceleration"), acceleration)?;
+            let acceleration = acceleration.iter().map(|value| value.value()).collect();
+            Action::Shake(Some(Shake { acceleration, frequency, pass: pass.value() }))
+        }
         Change::Open(name) => Action::Wall(name.clone(), true),
         Change::Close(name) => Action::Wall(name.clone(), false),
         Change::Start(name) => Action::Moving(name.clone(), true),
@@ -289,11 +324,34 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
             dem.set_gravity(D::Vec::from_slice(values).expect("the number of axes was checked at build"));
         }
         Action::StopMotion => dem.stop_motion(),
+        Action::Shake(shake) => {
+            let shaking = shake.as_ref().map(|shake| Shaking {
+                acceleration: D::Vec::from_slice(&shake.acceleration).expect("axes were counted at build"),
+                from: shake.frequency[0],
+                to: shake.frequency[1],
+                pass: shake.pass,
+            });
+            dem.set_shaking(shaking).expect("the values were checked at build");
+        }
         Action::Wall(name, open) => _ = dem.set_open(name, *open),
         Action::Moving(name, runs) => {
             dem.set_moving(name, *runs);
             dem.set_inlet(name, *runs);
         }
         Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
+    }
+}
+
+/// Saves the grains of a solver of this method.
+pub(super) fn save_sample(scene: &Scene, model: &Model, path: &Path) -> Result<(), Failure> {
+    // The order in which `NamedMaterials` counts them.
+    let names: Vec<String> = scene.materials.keys().cloned().collect();
+    let solver: &dyn Any = model.simulation.solver();
+    if let Some(dem) = solver.downcast_ref::<Dem<D2>>() {
+        SavedSample::of(dem, names, model.column).write(path)
+    } else if let Some(dem) = solver.downcast_ref::<Dem<D3>>() {
+        SavedSample::of(dem, names, model.column).write(path)
+    } else {
+        Ok(())
     }
 }

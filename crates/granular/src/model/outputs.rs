@@ -3,6 +3,7 @@
 use super::{Problems, nearest};
 use crate::folder::RESERVED;
 use crate::observers::{Grid, Line};
+use crate::probes;
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Scene, Writer};
 use crate::voronoi;
 use granular_core::{Location, Shown, ShownAs, Solver};
@@ -49,6 +50,15 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
             claim(&place, path, files, &mut taken, problems);
         }
     }
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let Some(path) = &stage.save else { continue };
+        let place = format!("stages.{k}.save");
+        if scene.fluid.is_some() {
+            problems.add(place, format!("`{path}`"), "nothing: only grains are saved as a sample", "");
+        } else if check_path(&place, path, problems) {
+            claim(&place, path, vec![path.clone()], &mut taken, problems);
+        }
+    }
     for (k, figure) in scene.figures.iter().enumerate() {
         let place = format!("figures.{k}.path");
         let path = figure.path();
@@ -59,6 +69,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         let (key, empty) = match figure {
             FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
             FigureSpec::Flow { times, .. }
+            | FigureSpec::RadialProfile { times, .. }
             | FigureSpec::Cells { times, .. }
             | FigureSpec::Map { times, .. }
             | FigureSpec::Profile { times, .. } => ("times", times.is_empty()),
@@ -105,7 +116,7 @@ fn claim(place: &str, path: &str, files: Vec<String>, taken: &mut Vec<Vec<String
 
 /// What outputs can show of a solver at its own places.
 pub fn all_shown(solver: &dyn Solver) -> Vec<Shown> {
-    let mut list = solver.shown();
+    let mut list = probes::shown(solver);
     list.extend(voronoi::shown(solver));
     list
 }
@@ -116,7 +127,7 @@ pub fn shown_on_grids(solver: &dyn Solver) -> Vec<Shown> {
 }
 
 /// Checks of probes, fields and columns.
-pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static str, problems: &mut Problems) {
     let (own, averaged) = (all_shown(solver), Grid::shown(solver));
     let mut unknown = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
@@ -144,7 +155,7 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, problems: &mut Pro
     check_grids(scene, solver, problems);
     check_lines(scene, solver, problems);
     check_tracks(scene, solver, problems);
-    check_figures(scene, &unknown, problems);
+    check_figures(scene, front, &unknown, problems);
 }
 
 /// Whether grids of outputs are of grains and make sense.
@@ -231,13 +242,13 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
 
 /// Whether figures draw from outputs that hold what they need. Outputs with `unknown` names have
 /// been blamed: what seems to lack is perhaps only misspelt.
-fn check_figures(scene: &Scene, unknown: &[&str], problems: &mut Problems) {
+fn check_figures(scene: &Scene, front: &'static str, unknown: &[&str], problems: &mut Problems) {
     for (k, figure) in scene.figures.iter().enumerate() {
         if matches!(figure, FigureSpec::Cells { .. }) && scene.dimension == Dimension::Space {
             let hint = "Flow draws spheres; `local_density` can be its colour";
             problems.add(format!("figures.{k}"), "Cells in space", "Cells in the plane", hint);
         }
-        let need = figure.needs();
+        let need = figure.needs(front);
         let place = format!("figures.{k}.{}", need.key);
         let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
         let found = of_kind.clone().find(|output| output.write.path() == need.output);

@@ -1,11 +1,15 @@
 //! Grains of a scene.
 
+mod cylinder;
+mod saved;
+
 use super::{ColumnSize, NamedMaterials, Problems};
 use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
 use granular_core::{Dim, Linear, Spin, Vector};
 use granular_dem::spec::GrainSpec;
 use granular_dem::{Grain, MaterialId};
 use granular_packing::{Grading, GradingError, Lattice, PackingError, Sides, ballistic, loose_lattice};
+use std::path::Path;
 
 /// Solid fraction that a deposit comes to rest at, to estimate sizes: plane and space.
 const SETTLED: [f64; 2] = [0.815, 0.60];
@@ -26,6 +30,7 @@ pub(crate) struct BuiltSample<D: Dim> {
 
 pub(crate) fn grains<D: Dim>(
     sample: &Sample,
+    folder: &Path,
     materials: &NamedMaterials,
     problems: &mut Problems,
 ) -> Option<BuiltSample<D>> {
@@ -34,6 +39,10 @@ pub(crate) fn grains<D: Dim>(
             let material = materials.find("sample.material", material, problems);
             let column = Column::of::<D>(sample, problems)?;
             column.build(material?, problems)
+        }
+        Sample::Cylinder { material, .. } => {
+            let material = materials.find("sample.material", material, problems);
+            cylinder::build(sample, material, problems)
         }
         Sample::Cell { .. } => super::cell::fill(sample, materials, problems),
         Sample::Grains(list) => {
@@ -45,6 +54,7 @@ pub(crate) fn grains<D: Dim>(
             let grains = grains.into_iter().collect::<Option<Vec<_>>>()?;
             Some(BuiltSample { grains, column: None, cell: None })
         }
+        Sample::File { .. } => saved::of_file(sample, folder, materials, problems),
     }
 }
 
@@ -120,22 +130,7 @@ impl<'a> Column<'a> {
         if *packing == PackingSpec::Ballistic && D::N == 3 {
             problems.add("sample.packing", "Ballistic", "Loose or Hexagonal in space", "");
         }
-        if *packing == PackingSpec::Hexagonal && !matches!(grading, GradingSpec::Single(_)) {
-            problems.add("sample.packing", "Hexagonal", "a grading of one size: Single(\"1 mm\")", "");
-        }
-        if let Err(error) = grading_of(grading).check() {
-            let key = match error.what {
-                what if what.starts_with("smallest") => ".min",
-                what if what.starts_with("largest") => ".max",
-                _ => "",
-            };
-            let key = if matches!(grading, GradingSpec::Single(_)) { "" } else { key };
-            let value = match key {
-                "" => format!("a grading whose {} is {}", error.what, error.value),
-                _ => format!("{} m", error.value),
-            };
-            problems.add(format!("sample.grading{key}"), value, error.allowed, "");
-        }
+        check_sizes(*packing, grading, problems);
         let column = Self {
             extent: *extent,
             aspect_ratio: *aspect_ratio,
@@ -193,7 +188,7 @@ impl<'a> Column<'a> {
             Extent::Grains(_) => (volume / (solid * shape)).powf(1.0 / D::N as f64),
         };
         let depth = (D::N == 3).then_some(depth_ratio * width);
-        let size = ColumnSize { width, height: self.aspect_ratio * width, depth };
+        let size = ColumnSize { width, height: self.aspect_ratio * width, depth, round: None };
         let (radii, positions) = match self.packing {
             PackingSpec::Ballistic => self.level_deposit::<D>(&grading, count, size)?,
             PackingSpec::Hexagonal => {
@@ -235,6 +230,26 @@ impl<'a> Column<'a> {
     }
 }
 
+/// Checks a grading, and that the packing can hold it.
+fn check_sizes(packing: PackingSpec, grading: &GradingSpec, problems: &mut Problems) {
+    if packing == PackingSpec::Hexagonal && !matches!(grading, GradingSpec::Single(_)) {
+        problems.add("sample.packing", "Hexagonal", "a grading of one size: Single(\"1 mm\")", "");
+    }
+    if let Err(error) = grading_of(grading).check() {
+        let key = match error.what {
+            what if what.starts_with("smallest") => ".min",
+            what if what.starts_with("largest") => ".max",
+            _ => "",
+        };
+        let key = if matches!(grading, GradingSpec::Single(_)) { "" } else { key };
+        let value = match key {
+            "" => format!("a grading whose {} is {}", error.what, error.value),
+            _ => format!("{} m", error.value),
+        };
+        problems.add(format!("sample.grading{key}"), value, error.allowed, "");
+    }
+}
+
 /// Why a column cannot be filled.
 struct Refusal {
     path: &'static str,
@@ -252,16 +267,20 @@ impl From<GradingError> for Refusal {
 impl From<PackingError> for Refusal {
     fn from(error: PackingError) -> Self {
         match error {
+            PackingError::OutOfRange { what, value, allowed } if what.starts_with("edge") => {
+                let value = format!("too narrow a sample: an edge of its base is {value} m");
+                Self { path: "sample.extent", value, allowed }
+            }
             PackingError::OutOfRange { what, value, allowed } if what.starts_with("width") => {
                 let value = format!("too narrow a column: its width is {value} m");
                 Self { path: "sample.extent", value, allowed }
             }
             PackingError::OutOfRange { what, value, allowed } => {
-                let value = format!("a column that cannot be filled: {what} is {value}");
+                let value = format!("a sample that cannot be filled: {what} is {value}");
                 Self { path: "sample", value, allowed }
             }
             other => {
-                let value = format!("a column that cannot be filled: {other}");
+                let value = format!("a sample that cannot be filled: {other}");
                 Self { path: "sample", value, allowed: "a wider column or another seed".to_owned() }
             }
         }

@@ -1,7 +1,7 @@
 //! Walls of a scene.
 
 use super::boundaries::{self, Surroundings};
-use super::{ColumnSize, Problems};
+use super::{ColumnSize, Problems, Round};
 use crate::scene::WallSpec;
 use crate::scene::boundaries::MotionSpec;
 use granular_core::units::Length;
@@ -43,13 +43,13 @@ pub(crate) fn walls<D: Dim>(
             Beside::Unknown if spec.needs_column() => continue,
             Beside::Nothing if spec.needs_column() => {
                 let (value, hint) = ("a wall beside a column", "write a Plane instead");
-                problems.add(path, value, "only with a sample that is a Column", hint);
+                problems.add(path, value, "only with a sample that is a Column or Cylinder", hint);
                 continue;
             }
             _ => None,
         };
         let before = built.list.len();
-        match shapes::<D>(&path, spec, column, material, problems) {
+        match shapes::<D>(&path, spec, (column, around.top), material, problems) {
             Ok(mut list) => {
                 for wall in &mut list {
                     boundaries::set_moving(&path, wall, spec.moves(), around, problems);
@@ -72,27 +72,12 @@ pub(crate) fn walls<D: Dim>(
 fn shapes<D: Dim>(
     path: &str,
     spec: &WallSpec,
-    column: Option<ColumnSize>,
+    sample: (Option<ColumnSize>, f64),
     material: MaterialId,
     problems: &mut Problems,
 ) -> Result<Vec<Wall<D>>, SetupError> {
-    let right = column.map_or(0.0, |column| column.width);
-    let plane = |name: &str, axis: usize, at: f64, towards: f64| {
-        Wall::plane(name, D::Vec::along(axis, at), D::Vec::along(axis, towards), material)
-    };
     let mut point = |key: &str, values: &[Length]| problems.vector::<D, _>(&format!("{path}.{key}"), values);
     Ok(match spec {
-        WallSpec::Floor { .. } => vec![plane("floor", D::UP, 0.0, 1.0)?],
-        WallSpec::Left { .. } => vec![plane("left", 0, 0.0, 1.0)?],
-        WallSpec::Right { .. } => vec![plane("right", 0, right, -1.0)?],
-        WallSpec::Gate { .. } => vec![plane("gate", 0, right, -1.0)?],
-        WallSpec::Sides { .. } => match column.and_then(|column| column.depth) {
-            Some(depth) => vec![plane("front", 1, 0.0, 1.0)?, plane("back", 1, depth, -1.0)?],
-            None => {
-                problems.add(path, "Sides", "a scene in space", "a plane scene has no sides");
-                vec![]
-            }
-        },
         WallSpec::Plane { name, point: on, normal, .. } => {
             let on = point("point", on);
             let numbers: Vec<Length> = normal.iter().map(|&n| n.into()).collect();
@@ -107,6 +92,10 @@ fn shapes<D: Dim>(
         },
         WallSpec::Block { name, low, high, .. } => match (point("low", low), point("high", high)) {
             (Some(low), Some(high)) => vec![Wall::block(name, low, high, material)?],
+            _ => vec![],
+        },
+        WallSpec::Tube { name, from, to, radius, .. } => match (point("from", from), point("to", to)) {
+            (Some(from), Some(to)) => vec![Wall::tube(name, from, to, radius.value(), material)?],
             _ => vec![],
         },
         WallSpec::Chain { name, points, closed, .. } => {
@@ -136,6 +125,51 @@ fn shapes<D: Dim>(
             (Some(low), Some(high)) => closed_box::<D>(name, low, high, material)?,
             _ => vec![],
         },
+        _ => beside_walls::<D>(path, spec, sample, material, problems)?,
+    })
+}
+
+/// Walls whose place follows from the sample.
+fn beside_walls<D: Dim>(
+    path: &str,
+    spec: &WallSpec,
+    (column, top): (Option<ColumnSize>, f64),
+    material: MaterialId,
+    problems: &mut Problems,
+) -> Result<Vec<Wall<D>>, SetupError> {
+    let right = column.map_or(0.0, |column| column.width);
+    let plane = |name: &str, axis: usize, at: f64, towards: f64| {
+        Wall::plane(name, D::Vec::along(axis, at), D::Vec::along(axis, towards), material)
+    };
+    Ok(match spec {
+        WallSpec::Floor { .. } => vec![plane("floor", D::UP, 0.0, 1.0)?],
+        WallSpec::Left { .. } => vec![plane("left", 0, 0.0, 1.0)?],
+        WallSpec::Right { .. } if column.is_some_and(|column| column.round.is_some()) => {
+            problems.add(path, "Right", "a Gate beside a cylinder", "or write a Tube");
+            vec![]
+        }
+        WallSpec::Right { .. } => vec![plane("right", 0, right, -1.0)?],
+        WallSpec::Gate { .. } => match column {
+            Some(ColumnSize { width, height, round: Some(_), .. }) => {
+                // Beyond the floor and the loose lattice from which the cylinder settles.
+                let ends = [-0.1 * width, height.max(top) + width];
+                let [from, to] = ends.map(|at| D::Vec::along(D::UP, at));
+                vec![Wall::tube("gate", from, to, width, material)?]
+            }
+            _ => vec![plane("gate", 0, right, -1.0)?],
+        },
+        WallSpec::Sides { .. } => match column {
+            Some(ColumnSize { depth: Some(depth), .. }) => {
+                vec![plane("front", 1, 0.0, 1.0)?, plane("back", 1, depth, -1.0)?]
+            }
+            Some(ColumnSize { round: Some(Round::Half), .. }) => vec![plane("front", 1, 0.0, 1.0)?],
+            _ => {
+                let hint = "a plane column and a whole cylinder have no sides";
+                problems.add(path, "Sides", "a column in space or half a cylinder", hint);
+                vec![]
+            }
+        },
+        _ => vec![],
     })
 }
 
@@ -205,6 +239,7 @@ impl WallSpec {
             | Self::Plane { material, .. }
             | Self::Segment { material, .. }
             | Self::Block { material, .. }
+            | Self::Tube { material, .. }
             | Self::Chain { material, .. }
             | Self::Mesh { material, .. }
             | Self::HeldGrains { material, .. }
@@ -217,6 +252,7 @@ impl WallSpec {
             Self::Plane { moves, .. }
             | Self::Segment { moves, .. }
             | Self::Block { moves, .. }
+            | Self::Tube { moves, .. }
             | Self::Chain { moves, .. }
             | Self::Mesh { moves, .. }
             | Self::HeldGrains { moves, .. } => moves.as_ref(),
@@ -235,6 +271,7 @@ impl WallSpec {
             Self::Plane { opens, .. }
             | Self::Segment { opens, .. }
             | Self::Block { opens, .. }
+            | Self::Tube { opens, .. }
             | Self::Chain { opens, .. }
             | Self::Mesh { opens, .. }
             | Self::HeldGrains { opens, .. } => opens.as_deref(),

@@ -77,6 +77,7 @@ impl FigureSpec {
         match self {
             Self::Series { path, .. }
             | Self::Runout { path, .. }
+            | Self::RadialProfile { path, .. }
             | Self::Energies { path, .. }
             | Self::Flow { path, .. }
             | Self::Cells { path, .. }
@@ -87,7 +88,8 @@ impl FigureSpec {
         }
     }
 
-    pub(crate) fn needs(&self) -> Need<'_> {
+    /// What a figure needs; `front` is the number that says how far the sample spread.
+    pub(crate) fn needs(&self, front: &'static str) -> Need<'_> {
         match self {
             Self::Series { table, columns, .. } => {
                 let names = columns.iter().map(String::as_str).collect();
@@ -97,7 +99,7 @@ impl FigureSpec {
                 key: "table",
                 writer: "Table",
                 output: table,
-                names: vec!["front", "height"],
+                names: vec![front, "height"],
                 stage: Some(stage),
             },
             Self::Energies { table, stage, .. } => Need {
@@ -112,6 +114,13 @@ impl FigureSpec {
                 writer: "Fields",
                 output: fields,
                 names: vec!["radius", color],
+                stage: Some(stage),
+            },
+            Self::RadialProfile { fields, stage, .. } => Need {
+                key: "fields",
+                writer: "Fields",
+                output: fields,
+                names: vec!["radius"],
                 stage: Some(stage),
             },
             Self::Cells { fields, stage, .. } => Need {

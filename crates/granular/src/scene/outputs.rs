@@ -160,10 +160,28 @@ pub enum FigureSpec {
     Runout {
         /// Name of the figure in the run folder, without ending.
         path: String,
-        /// Path of the `Table` output to read; it must hold `front` and `height`.
+        /// Path of the `Table` output to read; it must hold `front`, or `radial_front` of a cylinder, and `height`.
         table: String,
         /// Name of the stage in which the column collapses.
         stage: String,
+        /// Laws of the final run-out and height, to compare.
+        #[serde(default)]
+        laws: Vec<LawSpec>,
+    },
+    /// Height of the surface of a collapsing cylinder over the distance from its axis at several times, in units of its
+    /// radius: the highest point of rings two mean radii wide, in each sector of 30 degrees, averaged over sectors.
+    RadialProfile {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Fields` output to read; it must hold `radius`.
+        fields: String,
+        /// Name of the stage in which the cylinder collapses.
+        stage: String,
+        /// Times, at least one, in units of sqrt(H/g).
+        times: Vec<f64>,
+        /// Laws of the final run-out and height, to compare.
+        #[serde(default)]
+        laws: Vec<LawSpec>,
     },
     /// Where the energy goes after a stage begins, over the energy at its start.
     Energies {
@@ -269,6 +287,31 @@ pub enum FigureSpec {
         #[serde(default)]
         reference: Option<ReferenceSpec>,
     },
+}
+
+/// A law of the deposit of a column over its aspect ratio, of two powers: `coefficient * a^exponent`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawSpec {
+    /// Where it is from.
+    pub label: String,
+    /// Whether it is of the final height over the width, or radius, instead of the run-out over it.
+    #[serde(default)]
+    pub of_height: bool,
+    /// Coefficient and exponent up to the switch.
+    pub low: (f64, f64),
+    /// Aspect ratio from which the second power holds.
+    pub switch: f64,
+    /// Coefficient and exponent from the switch on.
+    pub high: (f64, f64),
+}
+
+impl LawSpec {
+    /// Its value at an aspect ratio.
+    pub fn at(&self, aspect_ratio: f64) -> f64 {
+        let (coefficient, exponent) = if aspect_ratio < self.switch { self.low } else { self.high };
+        coefficient * aspect_ratio.powf(exponent)
+    }
 }
 
 /// A curve from elsewhere, for figures.

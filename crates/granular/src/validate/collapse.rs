@@ -180,7 +180,7 @@ impl Collapse {
     fn stage(&self, scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<f64, Failure> {
         begin(model, index);
         match scene.stages[index].end {
-            End::For(_) | End::Steady { .. } => {
+            End::For(_) | End::Steady { .. } | End::Packed { .. } => {
                 self.part(model, dt, scene.stages[index].end.longest(), Vec::new())
             }
             End::Quiet { kinetic_over_potential, within } => {

@@ -69,6 +69,16 @@ const SHORTENED: &[(&str, &[&str])] = &[
         &["sample.extent=Grains(200)", "stages.0.end=For(\"0.02 s\")", "stages.1.end=For(\"0.06 s\")"],
     ),
     (
+        "ch4_collapse_3d",
+        &[
+            "sample.extent=Grains(200)",
+            "stages.0.end=For(\"0.06 s\")",
+            "stages.1.end=For(\"0.06 s\")",
+            "figures.1.times=[0, 2]",
+            "figures.2.times=[0, 2]",
+        ],
+    ),
+    (
         "ch4_column_collapse",
         &[
             "sample.extent=Grains(200)",

@@ -24,6 +24,7 @@ mod lattice_moduli;
 mod momentum;
 mod moving_walls;
 mod oblique_impact;
+mod packing_densities;
 mod packing_density;
 mod periodic_cell;
 mod poiseuille;

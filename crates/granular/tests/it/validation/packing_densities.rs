@@ -1,0 +1,8 @@
+//! Samples come out as dense as they were asked for.
+
+use super::passes;
+
+#[test]
+fn required_rows_pass() {
+    passes("packing_densities");
+}
