@@ -42,17 +42,15 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The normal stress that the cell was told to keep, and kept. The case `periodic_cell` requires it of a sample at rest.
+/// The cell keeps the normal stress that it was told to keep. The mean is one of looks at a stress that fluctuates by as much
+/// as 15 % in so few grains.
 fn servo(rows: &mut Rows, file: &MaterialFile) {
     for point in &file.points {
         let wanted = point.stress_over_modulus * STIFFNESS;
         let number = point.inertial_number.value;
         let metric = format!("mean normal stress of steady shear at I = {number:.3} [N/m]");
         let measure = Measure::relative(Tier::Identity, metric, point.normal_stress.value, wanted, 1e-2);
-        rows.add(measure.claim().note(format!(
-            "{}; a mean of looks at a stress that fluctuates by as much as 15 % in so few grains",
-            of_seeds(file, point.normal_stress)
-        )));
+        rows.add(measure.note(of_seeds(file, point.normal_stress)));
     }
 }
 
