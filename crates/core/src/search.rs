@@ -6,7 +6,18 @@
 //! never separates neighbours because clamping does not push cell numbers apart. A far ball
 //! therefore costs nothing.
 
+mod levels;
+
+pub use levels::SizeLevels;
+
 use crate::dim::{Dim, Linear, Vector};
+
+/// Visits the balls near a ball.
+pub trait Neighbours<D: Dim> {
+    /// Calls `visit` at least for every ball whose surface is nearer than the reach of the search to that of a ball of this
+    /// centre and radius \[m\], itself included; in a fixed order that depends on the balls only.
+    fn visit_near(&self, position: D::Vec, radius: f64, visit: impl FnMut(u32));
+}
 
 /// Sorts positions into cells and visits neighbours.
 #[derive(Clone, Debug, Default)]
@@ -87,10 +98,22 @@ impl<D: Dim> CellGrid<D> {
 
     /// Calls `visit` for every ball in the cells around `position`, itself included, in a fixed
     /// order that depends on positions only.
-    pub fn visit_around(&self, position: D::Vec, mut visit: impl FnMut(u32)) {
+    #[inline(always)]
+    pub fn visit_around(&self, position: D::Vec, visit: impl FnMut(u32)) {
         let centre = self.coordinates(position);
         let low = centre.map(|c| c.saturating_sub(1));
         let high: [usize; 3] = std::array::from_fn(|axis| (centre[axis] + 1).min(self.cells[axis] - 1));
+        self.visit_cells(low, high, visit);
+    }
+
+    /// Calls `visit` for every ball in the cells within `reach` \[m\] of `position` along each axis.
+    pub fn visit_within(&self, position: D::Vec, reach: f64, visit: impl FnMut(u32)) {
+        let corner = (0..D::N).fold(D::Vec::ZERO, |corner, axis| corner + D::Vec::along(axis, reach));
+        self.visit_cells(self.coordinates(position - corner), self.coordinates(position + corner), visit);
+    }
+
+    #[inline(always)]
+    fn visit_cells(&self, low: [usize; 3], high: [usize; 3], mut visit: impl FnMut(u32)) {
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 // Cells along x follow one another, and so do their members.
@@ -101,6 +124,14 @@ impl<D: Dim> CellGrid<D> {
                 }
             }
         }
+    }
+}
+
+impl<D: Dim> Neighbours<D> for CellGrid<D> {
+    /// Every radius up to that for which the cells were made sees the same cells.
+    #[inline(always)]
+    fn visit_near(&self, position: D::Vec, _radius: f64, visit: impl FnMut(u32)) {
+        self.visit_around(position, visit);
     }
 }
 

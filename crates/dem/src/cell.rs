@@ -47,6 +47,8 @@ pub struct Cell<D: Dim> {
     pub(crate) control: CellControl,
     /// Velocity gradient of the present step \[1/s\].
     pub(crate) gradient: Matrix<D>,
+    /// Velocity over place at the end of the last step \[1/s\].
+    pub(crate) last_gradient: Matrix<D>,
     /// Integral of the gradient over time \[-\].
     pub(crate) strain: Matrix<D>,
     /// Work done on the grains by deformation \[J\].
@@ -55,6 +57,8 @@ pub struct Cell<D: Dim> {
     pub(crate) drift: f64,
     /// Rate of the edges \[m/s\]: of this step within it, of the next one between steps.
     pub(crate) edge_rate: Matrix<D>,
+    /// Scratch: the same on the way from the middle of the last step to the middle of this one.
+    pub(crate) start_rate: Matrix<D>,
     /// Scratch: edges by which grains were last put back.
     pub(crate) wraps: Vec<Shift>,
     /// Scratch: laboratory velocities at the start of a step.
@@ -99,10 +103,12 @@ impl<D: Dim> Cell<D> {
             periodic: std::array::from_fn(|axis| periodic.get(axis).copied().unwrap_or(false)),
             control: CellControl::default(),
             gradient: Matrix::zero(),
+            last_gradient: Matrix::zero(),
             strain: Matrix::zero(),
             work: 0.0,
             drift: 0.0,
             edge_rate: Matrix::zero(),
+            start_rate: Matrix::zero(),
             wraps: Vec::new(),
             start_velocity: Vec::new(),
             sums: Vec::new(),
@@ -172,9 +178,10 @@ impl<D: Dim> Cell<D> {
         &self.control
     }
 
-    /// Whether it deforms now, or may in the next step.
+    /// Whether it deforms now, did in the last step, or may in the next one.
     pub(crate) fn deforms(&self) -> bool {
-        self.control.deforms() || self.gradient != Matrix::zero()
+        let still = Matrix::zero();
+        self.control.deforms() || self.gradient != still || self.last_gradient != still
     }
 
     /// Place of an image of the origin \[m\].

@@ -16,7 +16,7 @@ use crate::lists::{BlockList, Places, places, spare};
 use crate::material::{Materials, Tension};
 use crate::moving::Reaction;
 use crate::wall::Wall;
-use granular_core::search::CellGrid;
+use granular_core::search::{CellGrid, Neighbours, SizeLevels};
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
 
@@ -124,6 +124,8 @@ pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     outgoing: Vec<Vec<Owed<D>>>,
     inbox: Vec<Vec<Receipt>>,
     grid: CellGrid<D>,
+    /// In place of the grid where sizes differ much.
+    levels: Option<Box<SizeLevels<D>>>,
     results: Vec<(Losses, Option<Trouble>)>,
 }
 
@@ -142,6 +144,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             outgoing: vec![Vec::new(); count],
             inbox: vec![Vec::new(); count],
             grid: CellGrid::default(),
+            levels: None,
             results: vec![(Losses::default(), None); count],
         };
         Pairs::<D>::update(&mut contacts, materials, tension);
@@ -162,11 +165,14 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
             self.relocate(&Moved::Sorted { places: &places(order) });
         }
         let bounds = Bounds::of(cell, view.position);
-        let (grid, blocks) = (&self.grid, self.blocks);
-        let near = images::Near { view, cell, grid, bounds: &bounds, skin, largest };
-        blocks.for_each(PerBlock(&mut self.images), |block, list| {
-            list.0[0].build(&near, blocks.range(block));
-        });
+        let blocks = self.blocks;
+        if let Some(levels) = self.levels.as_deref() {
+            let near = images::Near { view, cell, search: levels, bounds: &bounds, skin, largest };
+            build_images(&mut self.images, blocks, &near);
+        } else {
+            let near = images::Near { view, cell, search: &self.grid, bounds: &bounds, skin, largest };
+            build_images(&mut self.images, blocks, &near);
+        }
         for (block, (list, outgoing)) in self.images.iter_mut().zip(&mut self.outgoing).enumerate() {
             let start = blocks.range(block).start as u32;
             list.owed = list.pairs.iter().filter(|pair| pair.second < start).count();
@@ -243,17 +249,44 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
     }
 }
 
+fn build_pairs<D: Dim, M: Copy + Default + PartialEq + Send>(
+    lists: &mut [BlockList<M>],
+    blocks: Blocks,
+    view: &View<'_, D>,
+    near: &(impl Neighbours<D> + Sync),
+    skin: f64,
+) {
+    blocks.for_each(PerBlock(lists), |block, list| {
+        list.0[0].build(view, near, blocks.range(block), skin);
+    });
+}
+
+fn build_images<D: Dim, M: Copy + Default + PartialEq + Send>(
+    images: &mut [ImageList<D, M>],
+    blocks: Blocks,
+    near: &images::Near<'_, D, impl Neighbours<D> + Sync>,
+) {
+    blocks.for_each(PerBlock(images), |block, list| list.0[0].build(near, blocks.range(block)));
+}
+
 impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
     fn list(&mut self, view: &View<'_, D>, skin: f64, order: Option<&[u32]>) {
-        let largest = view.radius.iter().fold(0.0, |a: f64, &b| a.max(b));
-        self.grid.fill(view.position, 2.0 * largest + skin);
+        let (smallest, largest) =
+            view.radius.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), &r| (a.min(r), b.max(r)));
+        if SizeLevels::<D>::suits(smallest, largest) {
+            self.levels.get_or_insert_default().fill(view.position, view.radius, skin);
+        } else {
+            self.levels = None;
+            self.grid.fill(view.position, 2.0 * largest + skin);
+        }
         if let Some(order) = order {
             self.regroup(view.walls, self.blocks, &crate::lists::places(order));
         }
-        let (grid, blocks) = (&self.grid, self.blocks);
-        blocks.for_each(PerBlock(&mut self.lists), |block, list| {
-            list.0[0].build(view, grid, blocks.range(block), skin);
-        });
+        let blocks = self.blocks;
+        match self.levels.as_deref() {
+            Some(levels) => build_pairs(&mut self.lists, blocks, view, levels, skin),
+            None => build_pairs(&mut self.lists, blocks, view, &self.grid, skin),
+        }
         self.reactions.iter_mut().for_each(|of_block| of_block.resize(view.poses.len(), Reaction::default()));
         if facet_lists::needed(view.walls) {
             blocks.for_each(PerBlock(&mut self.facets), |block, list| {

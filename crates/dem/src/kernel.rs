@@ -295,12 +295,14 @@ pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) 
 }
 
 /// The meeting of a body with another, each with its lever arm, if they meet within the step.
+///
+/// `turning` is the rate of the normal at the start of the step \[1/s\].
 #[inline(always)]
 fn meeting<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     (own, own_arm): (&Body<D>, f64),
     (other, other_arm): (&Body<D>, f64),
-    normal: D::Vec,
+    (normal, turning): (D::Vec, impl FnOnce() -> D::Vec),
     overlap: f64,
 ) -> Option<Meeting<D>> {
     let relative = own.velocity - other.velocity;
@@ -330,8 +332,12 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
             meeting.roll = D::tangential(own.spin - other.spin, normal);
         }
         let relative = own.start_velocity - other.start_velocity;
-        let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, normal);
-        meeting.start_slip = D::cross(normal, relative) - surface;
+        // The velocities are those half a step before the normal. Bodies that turn as one with a
+        // component along it would slide on each other by this difference.
+        let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
+        let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
+        // Within the tangent plane of now, or the moments on the two bodies would not balance.
+        meeting.start_slip = D::tangential(D::cross(start_normal, relative) - surface, normal);
         meeting.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
         meeting.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {
@@ -360,7 +366,8 @@ impl<D: Dim> Pair<'_, D> {
         let shorter = view.arm_share * overlap;
         let arms = (own.radius - shorter, other.radius - shorter);
         let normal = self.arm * (1.0 / self.distance);
-        let mut meeting = meeting::<D, L>(view, (own, arms.0), (other, arms.1), normal, overlap)?;
+        let turning = || (own.start_velocity - other.start_velocity) * (1.0 / self.distance);
+        let mut meeting = meeting::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap)?;
         meeting.effective_mass = own.mass * other.mass / (own.mass + other.mass);
         meeting.effective_radius = own.radius * other.radius / (own.radius + other.radius);
         Some((meeting, arms))
@@ -422,7 +429,13 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
         (other.spin, other.start_spin) = (pose.rate.spin, pose.start_rate.spin);
     }
     let own = view.body::<L>(first);
-    let mut meeting = meeting::<D, L>(view, (&own, arm), (&other, 0.0), normal, overlap)?;
+    let turning = || match ball {
+        Some(other_radius) => {
+            (own.start_velocity - other.start_velocity) * (1.0 / (radius + other_radius - overlap))
+        }
+        None => D::turn(other.start_spin, normal),
+    };
+    let mut meeting = meeting::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap)?;
     meeting.effective_mass = view.mass[first];
     meeting.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
     Some((meeting, arm))

@@ -7,7 +7,7 @@
 use crate::contacts::Receipt;
 use crate::kernel::View;
 use crate::wall::Shape;
-use granular_core::search::CellGrid;
+use granular_core::search::Neighbours;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored};
 use std::ops::Range;
 
@@ -52,7 +52,7 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     pub(crate) fn build<D: Dim>(
         &mut self,
         view: &View<'_, D>,
-        grid: &CellGrid<D>,
+        near: &impl Neighbours<D>,
         range: Range<usize>,
         skin: f64,
     ) {
@@ -64,7 +64,7 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
         for first in range.clone() {
             let (position, radius) = (view.position[first], view.radius[first]);
             let from = self.partners.len();
-            grid.visit_around(position, |second| {
+            near.visit_near(position, radius, |second| {
                 if (second as usize) < first {
                     let reach = radius + view.radius[second as usize] + skin;
                     if (position - view.position[second as usize]).length_squared() < reach * reach {

@@ -5,6 +5,7 @@ use crate::model::{self, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, SolverSpec};
 use crate::scene_file::{SceneProblem, SceneText};
+use crate::voronoi;
 use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
@@ -101,7 +102,10 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
 pub fn check(text: &SceneText) -> Result<Report, Failure> {
     let (scene, mut model) = read(text)?;
     let (limits, steps, problems) = limits_of(&scene, &model);
-    let memory = model.simulation.solver().memory();
+    let mut memory = model.simulation.solver().memory();
+    if voronoi::is_unused(&scene, model.simulation.solver()) {
+        memory.left_out.push("Voronoi cells: no output asks for them".to_owned());
+    }
     let stages: Vec<(String, f64, f64)> = scene
         .stages
         .iter()

@@ -19,10 +19,12 @@ pub(crate) mod collapse;
 mod conservation;
 pub(crate) mod fit;
 pub(crate) mod fluid;
+mod frames;
 mod grading;
 pub(crate) mod hertz;
 pub(crate) mod impact;
 mod incline;
+mod lattices;
 mod laws;
 mod oblique;
 mod packing;
@@ -33,6 +35,7 @@ mod reference;
 pub(crate) mod restitution;
 mod rolling;
 mod row;
+mod shear;
 pub mod stability;
 mod stages;
 pub(crate) mod strike;
@@ -99,6 +102,12 @@ pub const CASES: &[Case] = &[
         run: packing_density::run,
     },
     Case { name: "coarse_graining", about: "continuum fields from grains", run: coarse::run },
+    Case { name: "regular_packings", about: "strength of lattices of grains", run: lattices::strength },
+    Case { name: "lattice_moduli", about: "elastic moduli of lattices of grains", run: lattices::moduli },
+    Case { name: "chain_waves", about: "waves on a chain of grains", run: lattices::waves },
+    Case { name: "periodic_cell", about: "shifts of a periodic cell, and its stress", run: frames::shifts },
+    Case { name: "rotating_frame", about: "a turned and a turning frame", run: frames::rotation },
+    Case { name: "critical_state", about: "shear of the grains of the thesis", run: shear::run },
     Case {
         name: "poiseuille",
         about: "flow between plates, steady and started",

@@ -9,6 +9,7 @@ mod grid;
 
 pub(crate) use grid::{show_on_grid, shown_on_grid};
 
+use crate::scene::Scene;
 use granular_core::glam::{DVec2, DVec3};
 use granular_core::{
     D2, D3, Dim, FieldRef, FieldSink, GrainMotion, Provides, Shown, ShownAs, Solver, SymmetricTensor,
@@ -102,6 +103,9 @@ impl<'a> Packing<'a> {
         #[cfg(test)]
         MADE.set(MADE.get() + 1);
         match self {
+            // Before the first one comes in through an inlet.
+            Self::Plane(dem) if dem.is_empty() => Ok(Tessellated::default()),
+            Self::Space(dem) if dem.is_empty() => Ok(Tessellated::default()),
             Self::Plane(dem) => {
                 let (positions, radii) = grains(dem);
                 Ok(Tessellated { solids: solids::<D2>(&radii), cells: in_plane(dem, &positions, &radii)? })
@@ -118,6 +122,7 @@ impl<'a> Packing<'a> {
 }
 
 /// Volumes of grains and of their cells.
+#[derive(Default)]
 struct Tessellated {
     solids: Vec<f64>,
     cells: Vec<f64>,
@@ -159,6 +164,13 @@ pub(crate) fn shown(solver: &dyn Solver) -> Vec<Shown> {
     list
 }
 
+/// Whether grains could show cells and no output of the scene asks for any.
+pub(crate) fn is_unused(scene: &Scene, solver: &dyn Solver) -> bool {
+    let shown = shown(solver);
+    let is_asked = |name: &String| shown.iter().any(|shown| shown.name == *name);
+    !shown.is_empty() && !scene.outputs.iter().any(|output| output.write.names().iter().any(is_asked))
+}
+
 /// Shows what a sink wants of the cells. Cells larger than `free_surface` times the mean are no part of the bulk.
 pub(crate) fn show(solver: &dyn Solver, free_surface: f64, sink: &mut dyn FieldSink) {
     let Some(packing) = Packing::of(solver) else { return };
@@ -168,7 +180,7 @@ pub(crate) fn show(solver: &dyn Solver, free_surface: f64, sink: &mut dyn FieldS
     if !names.any(|name| sink.wants(name)) {
         return;
     }
-    // Without grains there are no cells.
+    // Grains with places and sizes that are no numbers have stopped the run before.
     let Ok(tessellated) = packing.tessellated() else { return };
     let bulk = bulk_of(&tessellated.solids, &tessellated.cells, free_surface);
     let in_bulk = tessellated.in_bulk(bulk.as_ref());

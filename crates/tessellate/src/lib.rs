@@ -70,7 +70,7 @@
 //! - In space only power cells; the module of [`power_cells`] says why. There is no power diagram in the plane: it is not
 //!   a special case of this sweep.
 //! - Coordinates and radii up to 1e150; those below 1e-300 of the largest may lose digits.
-//! - Exact arithmetic is slow: a lattice of points takes tens of times as long as random ones.
+//! - Exact arithmetic is slow: input that is degenerate everywhere takes longer.
 //! - Places of vertices are good to about 1e-11 of the circle that defines them, mostly far better; vertices very far
 //!   from the sites less.
 

@@ -6,7 +6,7 @@ use crate::contacts::Receipt;
 use crate::kernel::{Kernel, Owed, Pair, View, push_of};
 use crate::law::ContactLaw;
 use crate::lists::{BlockList, spare};
-use granular_core::search::CellGrid;
+use granular_core::search::Neighbours;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored, Vector};
 use std::ops::Range;
 
@@ -72,10 +72,10 @@ impl<D: Dim> Bounds<D> {
 
 /// What a search for images needs.
 #[derive(Clone, Copy)]
-pub(crate) struct Near<'a, D: Dim> {
+pub(crate) struct Near<'a, D: Dim, S> {
     pub(crate) view: &'a View<'a, D>,
     pub(crate) cell: &'a Cell<D>,
-    pub(crate) grid: &'a CellGrid<D>,
+    pub(crate) search: &'a S,
     pub(crate) bounds: &'a Bounds<D>,
     pub(crate) skin: f64,
     /// Largest radius \[m\].
@@ -84,8 +84,8 @@ pub(crate) struct Near<'a, D: Dim> {
 
 impl<D: Dim, M: Copy + Default + PartialEq> ImageList<D, M> {
     /// Lists the pairs of the grains in `range`; memories that are not fresh move along.
-    pub(crate) fn build(&mut self, near: &Near<'_, D>, range: Range<usize>) {
-        let Near { view, cell, grid, bounds, skin, largest } = *near;
+    pub(crate) fn build(&mut self, near: &Near<'_, D, impl Neighbours<D>>, range: Range<usize>) {
+        let Near { view, cell, search, bounds, skin, largest } = *near;
         self.harvest();
         // Room for what a compact block can have across faces, so that steps do not allocate.
         self.pairs.reserve(range.len());
@@ -99,7 +99,7 @@ impl<D: Dim, M: Copy + Default + PartialEq> ImageList<D, M> {
                     continue;
                 }
                 let seen_from = position - cell.offset(shift);
-                grid.visit_around(seen_from, |second| {
+                search.visit_near(seen_from, radius, |second| {
                     let reach = radius + view.radius[second as usize] + skin;
                     let arm = seen_from - view.position[second as usize];
                     if (second as usize) < first && arm.length_squared() < reach * reach {
@@ -341,13 +341,14 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
         return None;
     }
     let distance = squared.sqrt();
-    let mut rate = D::Vec::ZERO;
+    let (mut rate, mut start_rate) = (D::Vec::ZERO, D::Vec::ZERO);
     for axis in 0..D::N {
         rate += cell.edge_rate.columns[axis] * f64::from(pair.shift[axis]);
+        start_rate += cell.start_rate.columns[axis] * f64::from(pair.shift[axis]);
     }
     let mut other = view.body::<L>(second);
     other.velocity += rate;
-    other.start_velocity += rate;
+    other.start_velocity += start_rate;
     let (meeting, arms) =
         Pair { first, own: &view.body::<L>(first), other: &other, arm, distance }.meet::<L>(view)?;
     Some((meeting, arms, sum - distance))

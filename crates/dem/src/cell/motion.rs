@@ -33,15 +33,20 @@ pub(crate) fn open_step<D: Dim>(
     grains: &mut Grains<D>,
     cell: &mut Cell<D>,
     blocks: Blocks,
-    dt: f64,
+    [last_dt, dt]: [f64; 2],
     speeds: &mut [u64],
 ) {
     let half = 0.5 * dt;
     let gradient = cell.gradient;
     let stretch = Matrix::unit().plus(&gradient, -half).inverse();
+    // Springs advance from the middle of the last step to the middle of this one, and the rate of the cell may have
+    // jumped on the way.
+    let share = dt / (last_dt + dt);
+    let start_gradient =
+        Matrix::zero().plus(&gradient.times(&stretch), share).plus(&cell.last_gradient, 1.0 - share);
+    cell.start_rate = start_gradient.times(&cell.edges);
     cell.edges = stretch.times(&cell.edges);
     cell.edge_rate = gradient.times(&cell.edges);
-    let start_gradient = gradient.times(&stretch);
     let deforms = cell.deforms();
     cell.start_velocity.resize(if deforms { grains.len() } else { 0 }, D::Vec::ZERO);
     if !deforms {

@@ -6,9 +6,12 @@ use granular_core::{Dim, Section, SnapshotError};
 
 impl<D: Dim> Cell<D> {
     pub(crate) fn save(&self, to: &mut Section) {
-        for (name, matrix) in
-            [("cell edges", &self.edges), ("cell gradient", &self.gradient), ("cell strain", &self.strain)]
-        {
+        for (name, matrix) in [
+            ("cell edges", &self.edges),
+            ("cell gradient", &self.gradient),
+            ("cell gradient of the last step", &self.last_gradient),
+            ("cell strain", &self.strain),
+        ] {
             to.put(name, &matrix.to_array());
         }
         to.put("cell work and drift", &[self.work, self.drift]);
@@ -30,6 +33,7 @@ impl<D: Dim> Cell<D> {
         };
         self.edges = matrix("cell edges")?;
         self.gradient = matrix("cell gradient")?;
+        self.last_gradient = matrix("cell gradient of the last step")?;
         self.strain = matrix("cell strain")?;
         check_finite("cell edges", self.edges.determinant() > 0.0)?;
         let both: Vec<f64> = from.array_of("cell work and drift", 2)?;

@@ -113,7 +113,8 @@ impl<D: Dim> Dem<D> {
             self.sort_if_due();
             self.tend_cell();
             let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
-            motion::open_step(&mut self.grains, cell, self.blocks, dt, &mut self.speeds);
+            let steps = [self.last_dt, dt];
+            motion::open_step(&mut self.grains, cell, self.blocks, steps, &mut self.speeds);
             self.load_in_cell(dt, largest)?;
         }
         self.movers.place(self.clock.time());
@@ -197,6 +198,7 @@ impl<D: Dim> Dem<D> {
             let stress = Matrix::zero().plus(&virial, 1.0 / middle.determinant());
             cell.follow_stress(&stress, dt);
         }
+        cell.last_gradient = gradient.times(&Matrix::unit().plus(&gradient, 0.5 * dt).inverse());
         cell.edge_rate = cell.gradient.times(&cell.edges);
     }
 

@@ -25,6 +25,7 @@ mod stability;
 mod surfaces;
 mod traffic;
 mod twisting;
+mod wide;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =

@@ -15,9 +15,12 @@ pub(super) fn chart(study: &Study) -> Chart {
         let places = points.iter().map(|point| [point.seconds, point.error]).collect::<Vec<_>>();
         let bands = points.iter().map(|point| point.band).collect();
         let order = study.orders.get(scheme).map_or(String::new(), |order| format!(", order {order:.2}"));
-        let line = Series::new(format!("{scheme}{order}"), places.clone(), Style::Line);
+        let banded = points.iter().any(|point| point.band > 0.0);
+        // A scheme may have one point only.
+        let style = if banded { Style::Line } else { Style::LineAndMarkers };
+        let line = Series::new(format!("{scheme}{order}"), places.clone(), style);
         chart = chart.with(line.colour(colour));
-        if points.iter().any(|point| point.band > 0.0) {
+        if banded {
             chart = chart.with(Series::new("", places, Style::ErrorBars(bands)).colour(colour));
         }
     }

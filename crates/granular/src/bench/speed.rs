@@ -1,5 +1,5 @@
 //! Grain-steps a second of the discrete element method on two scenes: a collapsing column of
-//! disks, and spheres that settle in a box (see [`super::settling`]).
+//! disks, and spheres that settle in a box.
 //!
 //! The disks are of 0.92 to 1.38 mm, spread evenly by number, density 2650 kg/m³, normal and tangential
 //! stiffness 1.6e6 N/m, friction 0.53 everywhere, restitution 0.75, no tangential damping, a floor

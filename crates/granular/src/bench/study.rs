@@ -14,7 +14,7 @@ pub struct Point {
     pub scheme: String,
     /// How fine it is, in the unit of the study.
     pub resolution: f64,
-    /// Step \[s\].
+    /// Step \[s\]; not a number where there is none.
     pub dt: f64,
     /// Error.
     pub error: f64,
@@ -89,9 +89,11 @@ impl fmt::Display for Study {
         for point in &self.points {
             let Point { scheme, resolution, dt, error, band, seeds, seconds, pareto } = point;
             let mark = if *pareto { "*" } else { "" };
+            // Not every study has steps.
+            let dt = if dt.is_nan() { "-".to_owned() } else { format!("{dt:.3e}") };
             writeln!(
                 f,
-                "  {scheme:<30} {resolution:>17.2} {dt:>11.3e} {error:>11.3e} {band:>11.1e} {seeds:>6} \
+                "  {scheme:<30} {resolution:>17.2} {dt:>11} {error:>11.3e} {band:>11.1e} {seeds:>6} \
                  {seconds:>11.3e}  {mark}"
             )?;
         }

@@ -16,9 +16,9 @@ pub struct Plan {
     pub inertial_numbers: Vec<f64>,
     /// Inertial number at which other stresses are tried; one of those above.
     pub other_stresses_at: f64,
-    /// Shear strain before the flow is steady.
+    /// Shear strain before a slow flow is steady.
     pub settle: f64,
-    /// Shear strain over which it is measured.
+    /// Shear strain over which a slow flow is measured.
     pub measure: f64,
 }
 
@@ -45,6 +45,13 @@ impl Plan {
                 measure: 3.0,
             },
         }
+    }
+
+    /// Shear strain before a flow is steady, and at its end. A fast flow takes several strains to find its density: both
+    /// grow with the inertial number, and a fast flow costs less per strain.
+    pub(super) fn strains(&self, inertial_number: f64) -> (f64, f64) {
+        let longer = 1.0 + 20.0 * inertial_number;
+        (self.settle * longer, (self.settle + self.measure) * longer)
     }
 
     pub(super) fn seeds(&self) -> impl Iterator<Item = u64> + use<> {

@@ -192,6 +192,7 @@ pub(super) fn shear<D: Dim>(
     );
     control(&mut dem, driven)?;
     let steps = (LOOK / (rate * dt)).ceil() as u64;
+    let (steady_from, end) = plan.strains(inertial_number);
     let mut looks: Vec<Look> = Vec::new();
     loop {
         advance(&mut dem, dt, steps)?;
@@ -203,11 +204,11 @@ pub(super) fn shear<D: Dim>(
             normal: stress.at(D::UP, D::UP),
             solid_fraction: dem.solid_fraction().unwrap_or(f64::NAN),
         });
-        if cell.strain().at(0, D::UP) >= plan.settle + plan.measure {
+        if cell.strain().at(0, D::UP) >= end {
             break;
         }
     }
-    let steady: Vec<&Look> = looks.iter().filter(|look| look.strain > plan.settle).collect();
+    let steady: Vec<&Look> = looks.iter().filter(|look| look.strain > steady_from).collect();
     let mean =
         |value: fn(&Look) -> f64| steady.iter().map(|look| value(look)).sum::<f64>() / steady.len() as f64;
     let normal_stress = mean(|look| look.normal);

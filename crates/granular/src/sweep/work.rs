@@ -10,7 +10,10 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// How often the table is collected while runs are under way.
+const COLLECTS_EVERY: Duration = Duration::from_secs(10);
 
 /// How a sweep is worked through.
 #[derive(Clone, Copy, Debug)]
@@ -109,12 +112,15 @@ impl Plan {
         let jobs = work.jobs.clamp(1, waiting.len().max(1));
         let threads = (rayon::current_num_threads() / jobs).max(1);
         let (next, troubles) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+        let collected = Mutex::new(Instant::now());
         let worker = || {
             while !interrupt.raised.load(Ordering::Relaxed) {
                 let Some(&index) = waiting.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
                 let one = One { plan: self, out, index, work, alone: jobs == 1 };
                 let done = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-                    Ok(pool) => pool.install(|| one.run(interrupt)),
+                    Ok(pool) => {
+                        pool.install(|| one.run(interrupt)).and_then(|()| self.refresh(out, work, &collected))
+                    }
                     Err(error) => Err(Failure::io("threads", error)),
                 };
                 if let Err(trouble) = done {
@@ -126,6 +132,18 @@ impl Plan {
         };
         std::thread::scope(|scope| (0..jobs).for_each(|_| _ = scope.spawn(worker)));
         troubles.into_inner().expect("no holder panics").into_iter().next().map_or(Ok(()), Err)
+    }
+
+    /// Collects the table when that was long ago, so that a long sweep shows what is done so far.
+    fn refresh(&self, out: &Path, work: Work, collected: &Mutex<Instant>) -> Result<(), Failure> {
+        // When another run is at it, that one's table will do.
+        if let (None, Ok(mut last)) = (work.only, collected.try_lock())
+            && last.elapsed() > COLLECTS_EVERY
+        {
+            self.collect(out)?;
+            *last = Instant::now();
+        }
+        Ok(())
     }
 
     /// The failures of the chosen runs as one.

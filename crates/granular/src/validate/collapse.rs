@@ -92,7 +92,8 @@ impl Collapse {
         self
     }
 
-    fn scene(&self) -> Result<SceneText, Failure> {
+    /// Its scene.
+    pub(crate) fn scene(&self) -> Result<SceneText, Failure> {
         let template = crate::TEMPLATES.iter().find(|(name, _)| *name == "column-collapse");
         let (name, text) = template.expect("there is a template of a column collapse");
         let mut text = SceneText::new(*name, *text);

@@ -57,6 +57,20 @@ fn grains_of_a_lattice_fill_their_cells_alike() {
 }
 
 #[test]
+fn without_grains_there_are_fields_without_values() {
+    let (materials, gravity, options) = (Materials::new(), DVec2::ZERO, Options::default());
+    let dem =
+        Dem::<D2>::new(Setup { materials, grains: Vec::new(), walls: Vec::new(), gravity, options }).unwrap();
+    let mut frame = Frame::wanting(["local_density", "cell_stress", "in_bulk"]);
+    show(&dem, 2.0, &mut frame);
+    assert_eq!(frame.fields().len(), 3);
+    let mut numbers = Numbers::wanting(["bulk_density", "bulk_grains"]);
+    show(&dem, 2.0, &mut numbers);
+    assert!(numbers.get("bulk_density").unwrap().is_nan());
+    assert_eq!(numbers.get("bulk_grains"), Some(0.0));
+}
+
+#[test]
 fn stress_of_cells_is_that_of_the_lattice() {
     let pitch = 1.99 * RADIUS;
     // Disks: a contact carries k d and stands for the pitch. The border has half cells and no outer contacts.

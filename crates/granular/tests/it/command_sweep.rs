@@ -10,6 +10,8 @@ use std::time::{Duration, SystemTime};
 const SWEEP: &[&str] = &[
     "sweep",
     "small.ron",
+    "--threads",
+    "1",
     "--set",
     "figures=[]",
     "--set",
