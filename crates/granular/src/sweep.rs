@@ -34,6 +34,7 @@ pub use slurm::array_script;
 pub use state::State;
 pub use work::{Outcome, Work};
 
+use self::lock::Lock;
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::scene_file::{SceneProblem, SceneText};
@@ -103,6 +104,8 @@ impl Plan {
     /// # Errors
     /// When a file cannot be read or written.
     pub fn collect(&self, out: &Path) -> Result<Value, Failure> {
+        // Sweeps that share a folder may end at the same moment.
+        let _lock = Lock::of_table(out)?;
         let mut runs = Vec::new();
         for point in &self.points {
             runs.push((point, State::of(out, &point.folder)?, table::measures(out, point)?));
