@@ -85,7 +85,7 @@ pub const CASES: &[Case] = &[
     Case { name: "sliding_to_rolling", about: "when and how fast a ball rolls", run: rolling::run },
     Case { name: "bouncing_ball", about: "heights of a bouncing ball", run: rolling::bounces },
     Case { name: "momentum", about: "momentum of free collisions", run: conservation::momentum },
-    Case { name: "packing_densities", about: "samples of a wanted density", run: packing::densities },
+    Case { name: "sample_densities", about: "samples of a wanted density", run: packing::densities },
     Case { name: "grading", about: "sizes follow the beta curve", run: grading::run },
     Case {
         name: "wall_forces",

@@ -4,5 +4,5 @@ use super::passes;
 
 #[test]
 fn required_rows_pass() {
-    passes("packing_densities");
+    passes("sample_densities");
 }
