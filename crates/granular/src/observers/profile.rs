@@ -1,11 +1,12 @@
 //! Fields of a grid along a line, as rows of a table.
 
+use super::series::Series;
 use super::source::Source;
 use crate::failure::Failure;
 use granular_core::units::Length;
 use granular_core::{Flow, Location, Observer, ObserverError, Section, Simulation, SnapshotError};
+use granular_io::Frame;
 use granular_io::frame::Values;
-use granular_io::{Frame, TableWriter};
 use std::path::PathBuf;
 
 /// Points on a straight line \[m\].
@@ -82,14 +83,12 @@ fn weights(place: f64, count: usize) -> Vec<(usize, f64)> {
 
 /// Appends the fields along a line at each look.
 pub(super) struct ProfileObserver {
-    path: PathBuf,
+    series: Series,
     source: Source,
     line: Line,
     stencils: Vec<Stencil>,
     axes: usize,
     fields: Vec<String>,
-    columns: Vec<(String, String)>,
-    writer: Option<TableWriter>,
 }
 
 impl ProfileObserver {
@@ -105,47 +104,15 @@ impl ProfileObserver {
         };
         let axes = if cells[2] > 1 { 3 } else { 2 };
         let stencil = |point: &[f64; 3]| Stencil::at(*point, origin, spacing, cells);
-        let mut observer = Self {
+        let columns = header(&source.frame(fields, simulation), fields, axes);
+        Ok(Self {
+            series: Series::new(path, columns, fresh)?,
             stencils: line.points().iter().map(stencil).collect(),
-            path,
             source,
             line,
             axes,
             fields: fields.to_vec(),
-            columns: Vec::new(),
-            writer: None,
-        };
-        let frame = observer.frame(simulation);
-        observer.columns = observer.header(&frame);
-        if fresh {
-            observer.writer = Some(TableWriter::create(&observer.path, &observer.names())?);
-        }
-        Ok(observer)
-    }
-
-    fn frame(&self, simulation: &Simulation) -> Frame {
-        self.source.frame(&self.fields, simulation)
-    }
-
-    /// Names and units of columns: those of vectors have one per axis.
-    fn header(&self, frame: &Frame) -> Vec<(String, String)> {
-        let own = [("time", "s"), ("distance", "m"), ("x", "m"), ("y", "m"), ("z", "m")];
-        let own = own.iter().take(2 + self.axes).map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()));
-        let fields = self.fields.iter().filter_map(|name| frame.get(name)).flat_map(|field| {
-            let unit = field.unit.clone();
-            match field.values {
-                Values::Vector(_) => ["x", "y", "z"][..self.axes]
-                    .iter()
-                    .map(|axis| (format!("{}_{axis}", field.name), unit.clone()))
-                    .collect(),
-                _ => vec![(field.name.clone(), unit)],
-            }
-        });
-        own.chain(fields).collect()
-    }
-
-    fn names(&self) -> Vec<(&str, &str)> {
-        self.columns.iter().map(|(name, unit)| (name.as_str(), unit.as_str())).collect()
+        })
     }
 
     fn row(&self, frame: &Frame, index: usize, time: f64) -> Vec<f64> {
@@ -167,32 +134,44 @@ impl ProfileObserver {
     }
 }
 
+/// Names and units of columns: those of vectors have one per axis.
+fn header(frame: &Frame, fields: &[String], axes: usize) -> Vec<(String, String)> {
+    let own = [("time", "s"), ("distance", "m"), ("x", "m"), ("y", "m"), ("z", "m")];
+    let own = own.iter().take(2 + axes).map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()));
+    let fields = fields.iter().filter_map(|name| frame.get(name)).flat_map(|field| {
+        let unit = field.unit.clone();
+        match field.values {
+            Values::Vector(_) => ["x", "y", "z"][..axes]
+                .iter()
+                .map(|axis| (format!("{}_{axis}", field.name), unit.clone()))
+                .collect(),
+            _ => vec![(field.name.clone(), unit)],
+        }
+    });
+    own.chain(fields).collect()
+}
+
 impl Observer for ProfileObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let (frame, time) = (self.frame(simulation), simulation.clock().time());
-        let rows: Vec<Vec<f64>> =
-            (0..self.stencils.len()).map(|index| self.row(&frame, index, time)).collect();
-        if let Some(writer) = &mut self.writer {
-            rows.iter().try_for_each(|row| writer.row(row))?;
+        let (frame, time) = (self.source.frame(&self.fields, simulation), simulation.clock().time());
+        for index in 0..self.stencils.len() {
+            let row = self.row(&frame, index, time);
+            self.series.row(&row)?;
         }
+        self.series.looked_at(simulation);
         Ok(Flow::Continue)
     }
 
     fn finish(&mut self, _: &Simulation) -> Result<(), ObserverError> {
-        if let Some(writer) = &mut self.writer {
-            writer.sync()?;
-        }
-        Ok(())
+        self.series.sync()
     }
 
     fn save(&self, to: &mut Section) {
-        to.put_one("bytes", self.writer.as_ref().map_or(0, TableWriter::position));
+        self.series.save(to);
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let bytes: u64 = from.one("bytes")?;
-        self.writer = Some(TableWriter::reopen_at(&self.path, &self.names(), bytes)?);
-        Ok(())
+        self.series.restore(from)
     }
 }
 
