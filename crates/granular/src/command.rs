@@ -267,7 +267,10 @@ fn summary(facts: &Value, folder: &Path) -> String {
     );
     if let Some(metrics) = facts["metrics"].as_object() {
         for (name, value) in metrics {
-            text += &format!("  {:<26} {:.6}\n", name.replace('_', " "), value.as_f64().unwrap_or(f64::NAN));
+            let unit = facts["units"][name].as_str().filter(|unit| *unit != "1").unwrap_or_default();
+            let value = six_digits(value.as_f64().unwrap_or(f64::NAN));
+            let line = format!("  {:<26} {value} {unit}", name.replace('_', " "));
+            text += &(line.trim_end().to_owned() + "\n");
         }
     }
     text + &format!(
@@ -277,6 +280,12 @@ fn summary(facts: &Value, folder: &Path) -> String {
         "run folder",
         folder.display()
     )
+}
+
+/// A number as people read it, to about six digits.
+fn six_digits(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e6).contains(&size) { format!("{value:.6}") } else { format!("{value:.5e}") }
 }
 
 /// Prints a template, or lists all by the first line of each.

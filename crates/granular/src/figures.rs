@@ -17,7 +17,6 @@ use crate::scene::{FigureSpec, Scene};
 use granular_core::{ShownAs, Simulation};
 use granular_io::figure::{Axis, Chart, Series, Style};
 use granular_io::{Table, read_table};
-use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
 /// Lengths and times that a figure is drawn in.
@@ -104,40 +103,55 @@ pub fn draw(
     Ok(paths)
 }
 
-/// What the run measured, by name.
+/// A number that a run measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Metric {
+    pub(crate) name: String,
+    /// `1` for a plain number.
+    pub(crate) unit: &'static str,
+    pub(crate) value: f64,
+}
+
+/// What the run measured.
 pub(crate) fn metrics(
     scene: &Scene,
     simulation: &Simulation,
     (folder, records): (&RunFolder, &[StageRecord]),
     column: Option<ColumnSize>,
-) -> Value {
-    let mut metrics = Map::new();
-    let mut add = |name: &str, value: Option<f64>| {
-        if let Some(value) = value {
-            metrics.insert(name.to_owned(), json!(value));
-        }
+) -> Vec<Metric> {
+    let mut metrics = Vec::new();
+    let mut add = |name: &str, unit, value: Option<f64>| {
+        metrics.extend(value.map(|value| Metric { name: name.to_owned(), unit, value }));
     };
     for shown in simulation.solver().shown() {
         if shown.kind == ShownAs::Number && is_metric(&shown.name) {
-            add(&shown.name, number_of(simulation, &shown.name).filter(|number| number.is_finite()));
+            let number = number_of(simulation, &shown.name).filter(|number| number.is_finite());
+            add(&shown.name, shown.unit, number);
         }
     }
     if let (Some(column), Some(release)) = (column, release_of(scene, records)) {
-        add("aspect_ratio", Some(release.height / column.width));
+        add("aspect_ratio", "1", Some(release.height / column.width));
         let front = number_of(simulation, column.front());
-        add("runout", front.map(|front| (front - column.width) / column.width));
-        add("final_height_over_width", number_of(simulation, "height").map(|height| height / column.width));
-        add("duration_unit", gravity_time(scene, release.height));
+        add("runout", "1", front.map(|front| (front - column.width) / column.width));
+        let height = number_of(simulation, "height");
+        add("final_height_over_width", "1", height.map(|height| height / column.width));
+        add("duration_unit", "s", gravity_time(scene, release.height));
     }
-    let residual = number_of(simulation, "energy_residual").filter(|residual| residual.is_finite());
-    add("energy_residual", residual);
-    fluid::peaks(scene, folder, records, &mut metrics);
-    Value::Object(metrics)
+    metrics.extend(fluid::peaks(scene, folder, records));
+    metrics
 }
 
 /// Whether the last value of a number that the solver shows belongs to the result.
 fn is_metric(name: &str) -> bool {
-    let named = ["front", "height", "largest_overlap", "unconnected", "largest_speed", "mass_excess"];
+    let named = [
+        "front",
+        "height",
+        "largest_overlap",
+        "unconnected",
+        "largest_speed",
+        "mass_excess",
+        "energy_residual",
+    ];
     let begins = ["drag_coefficient_of_", "lift_coefficient_of_", "pressure_at_", "velocity_at_"];
     named.contains(&name) || begins.iter().any(|begin| name.starts_with(begin))
 }

@@ -437,6 +437,8 @@ impl Session<'_> {
         let steps = clock.step() - self.first_step;
         let metrics =
             crate::figures::metrics(self.scene, simulation, (&self.folder, &self.records), self.model.column);
+        let values = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.value)));
+        let units = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.unit)));
         let facts = json!({
             "scene": self.folder.scene_path().display().to_string(),
             "solver": simulation.solver().name(),
@@ -446,7 +448,8 @@ impl Session<'_> {
             "wall_seconds": wall,
             "rate": steps as f64 * simulation.solver().size().0 as f64 / wall,
             "state_hash": hash_hex(state_hash(&simulation.save())),
-            "metrics": metrics,
+            "metrics": Value::Object(values.collect()),
+            "units": Value::Object(units.collect()),
             "stages": self.records,
             "built": provenance(),
             "checksums": checksums.unwrap_or(Value::Null),

@@ -1,7 +1,7 @@
 //! Profiles and spectra of a fluid, from the files of a run.
 
 use super::spectrum::{Spectrum, spectrum};
-use super::{four_digits, table_of, title};
+use super::{Metric, four_digits, table_of, title};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::run::StageRecord;
@@ -9,7 +9,6 @@ use crate::scene::fluid::ReferenceSpec;
 use crate::scene::{FigureSpec, Scene};
 use granular_io::Table;
 use granular_io::figure::{Axis, Chart, Series, Style};
-use serde_json::{Map, Value, json};
 
 /// Points of a curve that are drawn at most.
 const DRAWN: usize = 2000;
@@ -99,22 +98,19 @@ pub(super) fn spectrum_chart(
     Ok(chart)
 }
 
-/// Peaks of all spectra of a scene, by name.
-pub(super) fn peaks(
-    scene: &Scene,
-    folder: &RunFolder,
-    records: &[StageRecord],
-    metrics: &mut Map<String, Value>,
-) {
+/// Peaks of all spectra of a scene.
+pub(super) fn peaks(scene: &Scene, folder: &RunFolder, records: &[StageRecord]) -> Vec<Metric> {
+    let mut metrics = Vec::new();
     for figure in &scene.figures {
         let FigureSpec::Spectrum { table, column, stage, reference, .. } = figure else { continue };
         let record = records.iter().find(|record| record.name == *stage);
         let (Some(record), Ok(table)) = (record, table_of(folder, table)) else { continue };
         let Some(peak) = spectrum_of(&table, column, record).and_then(|found| found.peak) else { continue };
-        metrics.insert(format!("frequency_of_{column}"), json!(peak));
+        metrics.push(Metric { name: format!("frequency_of_{column}"), unit: "1/s", value: peak });
         if let Some(reference) = reference {
-            let strouhal = peak * reference.length.value() / reference.speed.value();
-            metrics.insert(format!("strouhal_of_{column}"), json!(strouhal));
+            let value = peak * reference.length.value() / reference.speed.value();
+            metrics.push(Metric { name: format!("strouhal_of_{column}"), unit: "1", value });
         }
     }
+    metrics
 }

@@ -53,15 +53,15 @@ pub fn is_sweep(folder: &Path) -> bool {
 pub fn plot(folders: &[PathBuf], view: &View) -> Result<PathBuf, Failure> {
     let y = view.y.as_deref().unwrap_or("runout");
     let mut curves = Vec::new();
-    let (mut counts, mut label_of_x) = (Counts::default(), None);
+    let (mut counts, mut labels) = (Counts::default(), None);
     for folder in folders {
         let sweep = Collected::read(folder)?;
         let name = folder.file_name().filter(|_| folders.len() > 1).unwrap_or_default();
         sweep.add_curves(&name.to_string_lossy(), y, view, &mut curves, &mut counts)?;
-        label_of_x.get_or_insert(sweep.along(view.x.as_deref())?.to_owned());
+        labels.get_or_insert([sweep.along(view.x.as_deref())?.to_owned(), sweep.column(y).to_owned()]);
     }
-    let x = label_of_x.unwrap_or_default();
-    let chart = chart([&x, y], view, curves, &counts)?;
+    let [x_label, y_label] = labels.unwrap_or_default();
+    let chart = chart([&x_label, &y_label], view, curves, &counts)?;
     let place = folders.first().map_or(Path::new("."), PathBuf::as_path);
     let path = place.join(y.replace([':', ' ', '/', '[', ']'], "_").trim_end_matches('_'));
     chart.figure().save(&path)?;
@@ -126,7 +126,7 @@ impl Collected {
         curves: &mut Vec<Groups>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
-        let x = self.along(view.x.as_deref())?;
+        let (x, y) = (self.along(view.x.as_deref())?, self.column(y));
         let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
         let before = counts.left_out;
         for run in &self.runs {
@@ -164,13 +164,21 @@ impl Collected {
     /// What is along x: an axis, or a number that runs have measured.
     fn along<'a>(&'a self, name: Option<&'a str>) -> Result<&'a str, Failure> {
         let name = name.or(self.axes.first().map(String::as_str)).unwrap_or_default();
-        if self.runs.iter().any(|run| run["measures"][name].is_number()) {
-            return Ok(name);
+        let column = self.column(name);
+        if self.runs.iter().any(|run| run["measures"][column].is_number()) {
+            return Ok(column);
         }
         self.axis(name, "--x").map_err(|failure| match failure {
             Failure::Io(reason) => Failure::Io(format!("{reason}, or a number as for --y")),
             other => other,
         })
+    }
+
+    /// The column of this name, which may leave its unit out: `runout` is `runout [1]`.
+    fn column<'a>(&'a self, name: &'a str) -> &'a str {
+        let columns = self.runs.iter().filter_map(|run| run["measures"].as_object()).flat_map(|m| m.keys());
+        let bare = |column: &str| column.split_once(" [").map(|(bare, _)| bare == name);
+        columns.into_iter().find(|column| bare(column) == Some(true)).map_or(name, String::as_str)
     }
 
     /// Where a run stands along x.

@@ -11,7 +11,7 @@ use std::path::Path;
 pub(super) type Measures = Vec<(String, String)>;
 
 /// What a run that is done measured: the metrics of its `run.json`, then the last row of each table,
-/// under `<table>:<column>`.
+/// under `<table>:<column>`; all with their units in brackets.
 pub(super) fn measures(out: &Path, point: &Point) -> Result<Measures, Failure> {
     let Ok(run) = RunFolder::open(&out.join(&point.folder)) else { return Ok(Vec::new()) };
     let facts = run.facts()?;
@@ -19,7 +19,11 @@ pub(super) fn measures(out: &Path, point: &Point) -> Result<Measures, Failure> {
         return Ok(Vec::new());
     }
     let metrics = facts["metrics"].as_object().into_iter().flatten();
-    let mut found: Measures = metrics.map(|(name, value)| (name.clone(), value.to_string())).collect();
+    let with_unit = |name: &str| match facts["units"][name].as_str() {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_owned(),
+    };
+    let mut found: Measures = metrics.map(|(name, value)| (with_unit(name), value.to_string())).collect();
     let scene: Scene = point.text.parse()?;
     for Output { write, .. } in &scene.outputs {
         let Writer::Table { path, .. } = write else { continue };

@@ -34,6 +34,10 @@ fn run_prints_one_object_of_the_promised_form() {
     let hash = result["state_hash"].as_str().unwrap();
     assert!(hash.len() == 32 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
     assert!(result["metrics"].as_object().unwrap().values().all(Value::is_number));
+    // Each number has its unit in `run.json`.
+    let facts = facts(&scratch.path("a"));
+    assert_eq!(keys(&facts["units"]), keys(&result["metrics"]));
+    assert_eq!((&facts["units"]["front"], &facts["units"]["runout"]), (&"m".into(), &"1".into()));
     // Progress goes to standard error, and is silenced with --quiet.
     assert!(outcome.err.contains("settle: 0.000000 s to 0.005"), "{}", outcome.err);
     let quiet = [&["run", "small.ron", "--json", "--quiet", "--out", "b"], SHORT].concat();

@@ -61,8 +61,8 @@ fn a_sweep_killed_again_and_again_ends_in_the_same_table() {
     let rows = table(&scratch.path("whole"));
     let lines: Vec<&str> = rows.lines().collect();
     assert_eq!(lines.len(), 5, "{rows}");
-    let head = "run,materials.glass.friction,gravity,exit,front,height,";
-    assert!(lines[0].starts_with(head) && lines[0].contains(",runout,"), "{rows}");
+    let head = "run,materials.glass.friction,gravity,exit,front [m],height [m],";
+    assert!(lines[0].starts_with(head) && lines[0].contains(",runout [1],"), "{rows}");
     assert!(lines[0].contains(",series:time [s],series:front [m],"), "{rows}");
     assert!(lines[4].contains(",0.5,\"[0, -1.62]\",done,"), "{rows}");
     assert!(runs(&whole).iter().all(|run| run["exit"] == "done"), "{whole}");
@@ -101,7 +101,7 @@ fn draws_figures(scratch: &Scratch) {
     assert_eq!(plot(&["--reference", "laws.csv"]).expect(0).out, "whole/runout.svg, whole/runout.png\n");
     let figure = fs::read_to_string(scratch.path("whole/runout.svg")).unwrap();
     for part in
-        ["materials.glass.friction", "runout", "this sweep", "Theirs, 2004", "means over up to 2 runs"]
+        ["materials.glass.friction", "runout [1]", "this sweep", "Theirs, 2004", "means over up to 2 runs"]
     {
         assert!(figure.contains(part), "`{part}` is not in the figure");
     }
@@ -111,7 +111,8 @@ fn draws_figures(scratch: &Scratch) {
     // Each run has its own aspect ratio: four points, no means.
     plot(&["--x", "aspect_ratio", "--y", "height"]).expect(0);
     let figure = fs::read_to_string(scratch.path("whole/height.svg")).unwrap();
-    assert!(figure.contains("aspect_ratio") && !figure.contains("means over"), "{figure}");
+    let has = |part: &str| figure.contains(part);
+    assert!(has("aspect_ratio [1]") && has("height [m]") && !has("means over"), "{figure}");
     // One figure of two sweeps, which are the same here; a law through four points.
     let two = ["plot", "whole", "whole", "--x", "aspect_ratio", "--fit", "0.1..2"];
     assert_eq!(scratch.granular(&two).expect(0).out, "whole/runout.svg, whole/runout.png\n");
@@ -124,7 +125,7 @@ fn draws_figures(scratch: &Scratch) {
     let wrong: &[(&[&str], &[&str])] = &[
         (&["--fit", "1..2"], &["--fit: `this sweep` has no three points in that range"]),
         (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
-        (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout, "]),
+        (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout [1], "]),
         (&["--x", "gravity"], &["--x: `gravity` is `[0, -9.81]` in a run"]),
         (&["--reference", "nothing.csv"], &["nothing.csv"]),
         (&["--reference", "small.ron"], &["small.ron:2: `", "a label, x and y are expected"]),
