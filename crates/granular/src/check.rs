@@ -9,7 +9,6 @@ use crate::voronoi;
 use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Wall time spent on measuring the speed of a scene.
@@ -41,8 +40,7 @@ pub struct Report {
 /// # Errors
 /// With all problems of the scene.
 pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
-    let mut scene: Scene = text.parse()?;
-    scene.folder = Path::new(text.name()).parent().unwrap_or(Path::new("")).to_owned();
+    let scene = Scene::of(text)?;
     let located = |problem: SceneProblem| problem.located_in(text);
     let model =
         model::build(&scene).map_err(|list| Failure::Scene(list.into_iter().map(located).collect()))?;

@@ -1,25 +1,30 @@
 //! The run folder: what a run leaves behind.
 
 use crate::failure::Failure;
+use crate::lock::Lock;
+use crate::scene::files::{MESHES, SAMPLE};
 use granular_io::{SnapshotStore, write_atomically};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// File that marks a run folder.
 const RUN_FILE: &str = "run.json";
 const SCENE_FILE: &str = "scene.ron";
 const SNAPSHOTS: &str = "snapshots";
+/// Whoever writes to the folder holds the lock of this empty file.
+const LOCK: &str = "lock";
 /// Names in a run folder that no output may take.
-pub(crate) const RESERVED: [&str; 4] = [RUN_FILE, SCENE_FILE, SNAPSHOTS, SAMPLE_FILE];
-/// The sample from a file that a run started from.
-pub(crate) const SAMPLE_FILE: &str = "initial-sample.csv";
+pub(crate) const RESERVED: [&str; 6] = [RUN_FILE, SCENE_FILE, SNAPSHOTS, LOCK, SAMPLE, MESHES];
 
 /// A folder that holds the resolved scene, `run.json`, tables, fields, figures and snapshots.
 #[derive(Clone, Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Held by the process that runs in it.
+    _lock: Option<Arc<Lock>>,
 }
 
 impl RunFolder {
@@ -34,25 +39,12 @@ impl RunFolder {
                 "is a file; a run needs a folder: choose one with --out",
             ));
         }
-        // A run that was killed before it wrote its first file leaves a part of that.
-        let litter = format!("{RUN_FILE}.tmp");
-        let entries = fs::read_dir(path).into_iter().flatten().flatten();
-        let occupied = entries.into_iter().any(|entry| entry.file_name() != litter.as_str());
-        if occupied {
-            let is_run = path.join(RUN_FILE).is_file();
-            if !is_run {
-                let reason = "is not empty and holds no run (no run.json), so it is left alone, also with \
-                              --force; choose another folder with --out";
-                return Err(Failure::io(path.display(), reason));
-            }
-            if !force {
-                let reason = "holds a run already; --force replaces it, --out chooses another folder";
-                return Err(Failure::io(path.display(), reason));
-            }
-            fs::remove_dir_all(path).map_err(|error| Failure::io(path.display(), error))?;
-        }
-        fs::create_dir_all(path).map_err(|error| Failure::io(path.display(), error))?;
-        let folder = Self { path: path.to_path_buf() };
+        refuse_occupied(path, force)?;
+        let lock = lock(path)?;
+        // Another process may have been faster.
+        refuse_occupied(path, force)?;
+        empty(path).map_err(|error| Failure::io(path.display(), error))?;
+        let folder = Self { path: path.to_path_buf(), _lock: Some(lock) };
         // This file marks the folder as a run, so it comes first: what is killed from here on can
         // be resumed or replaced.
         folder.set_facts(&json!({ "exit": "running" }))?;
@@ -68,7 +60,7 @@ impl RunFolder {
         let lacks: Vec<&str> =
             [SCENE_FILE, RUN_FILE].into_iter().filter(|name| !path.join(name).is_file()).collect();
         match (path.is_dir(), lacks.as_slice()) {
-            (true, []) => Ok(Self { path: path.to_path_buf() }),
+            (true, []) => Ok(Self { path: path.to_path_buf(), _lock: None }),
             (true, _) => Err(Failure::io(
                 path.display(),
                 format!("is no run folder: it lacks {}", lacks.join(" and ")),
@@ -78,6 +70,16 @@ impl RunFolder {
             }
             (false, _) => Err(Failure::io(path.display(), "there is no such folder")),
         }
+    }
+
+    /// Opens the folder of a run to go on with it.
+    ///
+    /// # Errors
+    /// When it is none, or another process runs in it.
+    pub fn take_up(path: &Path) -> Result<Self, Failure> {
+        let mut folder = Self::open(path)?;
+        folder._lock = Some(lock(path)?);
+        Ok(folder)
     }
 
     /// The folder.
@@ -120,9 +122,13 @@ impl RunFolder {
         self.write(RUN_FILE, &(text + "\n"))
     }
 
-    /// Keeps the sample that the run starts from.
-    pub(crate) fn write_sample(&self, bytes: &[u8]) -> Result<(), Failure> {
-        write_atomically(&self.path.join(SAMPLE_FILE), |file| std::io::Write::write_all(file, bytes))?;
+    /// Keeps a file that the scene reads.
+    pub(crate) fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let path = self.path.join(name);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
+        }
+        write_atomically(&path, |file| std::io::Write::write_all(file, bytes))?;
         Ok(())
     }
 
@@ -131,7 +137,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Checksums (XXH3, 64 bits) of all files but `run.json` and snapshots, by name.
+    /// Checksums (XXH3, 64 bits) of all files but `run.json`, the lock and snapshots, by name.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -144,7 +150,7 @@ impl RunFolder {
                 let name = path.strip_prefix(&self.path).unwrap_or(&path).display().to_string();
                 if path.is_dir() && name != SNAPSHOTS {
                     folders.push(path);
-                } else if path.is_file() && name != RUN_FILE {
+                } else if path.is_file() && name != RUN_FILE && name != LOCK {
                     let sum = checksum(&path).map_err(|error| Failure::io(path.display(), error))?;
                     sums.insert(name, json!(format!("{sum:016x}")));
                 }
@@ -152,6 +158,50 @@ impl RunFolder {
         }
         Ok(Value::Object(sums.into_iter().collect()))
     }
+}
+
+/// Refuses a folder that holds something else than a run, or a run that is not to be replaced.
+fn refuse_occupied(path: &Path, force: bool) -> Result<(), Failure> {
+    // What a run leaves that was killed before it wrote its first file.
+    let litter = [format!("{RUN_FILE}.tmp"), LOCK.to_owned()];
+    let entries = fs::read_dir(path).into_iter().flatten().flatten();
+    let is_litter = |entry: &fs::DirEntry| litter.iter().any(|name| entry.file_name() == name.as_str());
+    if entries.into_iter().all(|entry| is_litter(&entry)) {
+        return Ok(());
+    }
+    if !path.join(RUN_FILE).is_file() {
+        let reason = "is not empty and holds no run (no run.json), so it is left alone, also with \
+                      --force; choose another folder with --out";
+        return Err(Failure::io(path.display(), reason));
+    }
+    if !force {
+        let reason = "holds a run already; --force replaces it, --out chooses another folder";
+        return Err(Failure::io(path.display(), reason));
+    }
+    Ok(())
+}
+
+/// Takes the lock of a folder, which is made if it is not there.
+fn lock(path: &Path) -> Result<Arc<Lock>, Failure> {
+    let taken = Lock::take(&path.join(LOCK))?.map(Arc::new);
+    taken.ok_or_else(|| {
+        let reason = "another `granular` process runs in this folder; wait until it has ended or stop it, or choose \
+                      another folder with --out";
+        Failure::io(path.display(), reason)
+    })
+}
+
+/// Takes all out of a folder but the lock, which is held, and the file that marks it as a run, which is written next.
+fn empty(path: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(path)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            fs::remove_dir_all(entry.path())?;
+        } else if entry.file_name() != LOCK && entry.file_name() != RUN_FILE {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 fn checksum(path: &Path) -> std::io::Result<u64> {

@@ -2,11 +2,11 @@
 
 use crate::check;
 use crate::failure::Failure;
-use crate::folder::{RunFolder, SAMPLE_FILE, provenance};
+use crate::folder::{RunFolder, provenance};
 use crate::model::{self, Model};
 use crate::observers::{self, END_OF_STAGE, Packed, Rest, SnapshotTimer, Steady};
 use crate::progress;
-use crate::scene::{End, Sample, Scene};
+use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
 use granular_core::{Ending, Scheduled, Section, Simulation};
@@ -97,19 +97,10 @@ pub fn run(
         return Err(check::refusal(text.name(), &problems));
     }
     let mut text = text.clone();
-    let sample = match &scene.sample {
-        // The folder holds all that the run needs.
-        Some(Sample::File { path, .. }) => {
-            let bytes = std::fs::read(scene.folder.join(path)).map_err(|error| Failure::io(path, error))?;
-            text.set(&format!("sample.path=\"{SAMPLE_FILE}\""))?;
-            Some(bytes)
-        }
-        _ => None,
-    };
+    // The folder holds all that the run needs.
+    let files = scene.take_files(&mut text)?;
     let folder = RunFolder::create(out, text.text(), force)?;
-    if let Some(bytes) = sample {
-        folder.write_sample(&bytes)?;
-    }
+    files.iter().try_for_each(|(name, bytes)| folder.keep(name, bytes))?;
     Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start()
 }
 
@@ -118,7 +109,7 @@ pub fn run(
 /// # Errors
 /// As [`run`], and when no snapshot can be read.
 pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
-    let folder = RunFolder::open(out)?;
+    let folder = RunFolder::take_up(out)?;
     let text = SceneText::read(folder.scene_path())?;
     if folder.facts()?["exit"] == "done" {
         return Err(Failure::io(out.display(), "this run is done; there is nothing to resume"));

@@ -4,6 +4,7 @@
 
 pub mod boundaries;
 pub mod cell;
+pub(crate) mod files;
 pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
@@ -19,7 +20,7 @@ use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
 use granular_lbm::spec::LbmSpec;
 use region::RegionSpec;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A granular problem: the whole file, `Scene(...)`.
@@ -85,7 +86,7 @@ fn default_snapshot_interval() -> Time {
 }
 
 /// Plane or space: how many components positions and velocities have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Dimension {
     /// The plane, x to the right and y up; grains are disks, and everything is per metre of depth.
     Plane,
@@ -352,7 +353,7 @@ pub enum WallSpec {
     Mesh {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
-        /// Path of the file, from where the command is run.
+        /// The file; its path counts from the folder of the scene.
         file: String,
         /// Length of one unit of the file; a metre by default.
         #[serde(default = "metre")]

@@ -21,7 +21,6 @@
 mod axis;
 mod figure;
 mod forecast;
-mod lock;
 mod slurm;
 mod state;
 mod table;
@@ -34,8 +33,8 @@ pub use slurm::array_script;
 pub use state::State;
 pub use work::{Outcome, Work};
 
-use self::lock::Lock;
 use crate::failure::Failure;
+use crate::lock::Lock;
 use crate::scene::Scene;
 use crate::scene_file::{SceneProblem, SceneText};
 use serde_json::{Map, Value, json};
@@ -57,7 +56,7 @@ pub struct Point {
     pub labels: Vec<String>,
     /// The scene with all changes.
     pub text: SceneText,
-    /// Name of the folder: a hash of what is run.
+    /// Name of the folder: a hash of what is run, the files that the scene reads included.
     pub folder: String,
 }
 
@@ -105,7 +104,7 @@ impl Plan {
     /// When a file cannot be read or written.
     pub fn collect(&self, out: &Path) -> Result<Value, Failure> {
         // Sweeps that share a folder may end at the same moment.
-        let _lock = Lock::of_table(out)?;
+        let _lock = Lock::wait(&lock_path(out, "table"))?;
         let mut runs = Vec::new();
         for point in &self.points {
             runs.push((point, State::of(out, &point.folder)?, table::measures(out, point)?));
@@ -150,11 +149,16 @@ impl Point {
         for (axis, value) in axes.iter().zip(values) {
             text.set(&format!("{}={value}", axis.path))?;
         }
-        text.parse::<Scene>()?;
-        let folder = format!("{:016x}", text.content_hash());
+        let folder = format!("{:016x}", Scene::of(&text)?.content_hash(&text));
         let varying = axes.iter().zip(values).filter(|(axis, _)| axis.varies());
         Ok(Self { labels: varying.map(|(_, value)| axis::label_of(value)).collect(), text, folder })
     }
+}
+
+/// File whose lock keeps processes from working on the run in this folder, or on the table. It stands beside the
+/// folders, since a refused run has none.
+fn lock_path(out: &Path, name: &str) -> PathBuf {
+    out.join("locks").join(name)
 }
 
 /// Values that are written differently may still be the same scene, such as `4 mm` and `"4 mm"`.

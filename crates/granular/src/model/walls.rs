@@ -7,6 +7,7 @@ use crate::scene::boundaries::MotionSpec;
 use granular_core::units::Length;
 use granular_core::{Dim, Vector};
 use granular_dem::{MaterialId, SetupError, Wall};
+use std::path::Path;
 
 /// What walls may stand beside.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +50,7 @@ pub(crate) fn walls<D: Dim>(
             _ => None,
         };
         let before = built.list.len();
-        match shapes::<D>(&path, spec, (column, around.top), material, problems) {
+        match shapes::<D>(&path, spec, (column, around), material, problems) {
             Ok(mut list) => {
                 for wall in &mut list {
                     boundaries::set_moving(&path, wall, spec.moves(), around, problems);
@@ -72,7 +73,7 @@ pub(crate) fn walls<D: Dim>(
 fn shapes<D: Dim>(
     path: &str,
     spec: &WallSpec,
-    sample: (Option<ColumnSize>, f64),
+    (column, around): (Option<ColumnSize>, &Surroundings<'_>),
     material: MaterialId,
     problems: &mut Problems,
 ) -> Result<Vec<Wall<D>>, SetupError> {
@@ -107,7 +108,7 @@ fn shapes<D: Dim>(
                 .into_iter()
                 .collect()
         }
-        WallSpec::Mesh { .. } => mesh::<D>(path, spec, material, problems)?,
+        WallSpec::Mesh { .. } => mesh::<D>(path, spec, (material, &around.scene.folder), problems)?,
         WallSpec::HeldGrains { name, low, high, diameter, spacing, scatter, seed, .. } => {
             match (point("low", low), point("high", high)) {
                 (Some(low), Some(high)) => {
@@ -125,7 +126,7 @@ fn shapes<D: Dim>(
             (Some(low), Some(high)) => closed_box::<D>(name, low, high, material)?,
             _ => vec![],
         },
-        _ => beside_walls::<D>(path, spec, sample, material, problems)?,
+        _ => beside_walls::<D>(path, spec, (column, around.top), material, problems)?,
     })
 }
 
@@ -177,17 +178,18 @@ fn beside_walls<D: Dim>(
 fn mesh<D: Dim>(
     path: &str,
     spec: &WallSpec,
-    material: MaterialId,
+    (material, folder): (MaterialId, &Path),
     problems: &mut Problems,
 ) -> Result<Vec<Wall<D>>, SetupError> {
     let WallSpec::Mesh { name, file, unit, at, .. } = spec else { return Ok(vec![]) };
-    let triangles = match granular_io::read_stl(std::path::Path::new(file)) {
+    let file = folder.join(file);
+    let triangles = match granular_io::read_stl(&file) {
         Ok(triangles) => triangles,
         Err(error) => {
-            let hint = "the path is taken from where the command is run";
+            let hint = "the path counts from the folder of the scene";
             problems.add(
                 format!("{path}.file"),
-                format!("`{file}`: {error}"),
+                format!("`{}`: {error}", file.display()),
                 "an STL file that can be read",
                 hint,
             );

@@ -1,8 +1,8 @@
 //! Working through a grid.
 
-use super::lock::Lock;
-use super::{Plan, State, state};
+use super::{Plan, State, lock_path, state};
 use crate::failure::Failure;
+use crate::lock::Lock;
 use crate::progress::{duration, say};
 use crate::run::{self, Interrupt};
 use crate::scene_file::SceneProblem;
@@ -182,7 +182,7 @@ impl One<'_> {
     /// written down ends the sweep.
     fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         let point = &self.plan.points[self.index];
-        let Some(_lock) = Lock::take(self.out, &point.folder)? else {
+        let Some(_lock) = Lock::take(&lock_path(self.out, &point.folder))? else {
             self.say("another process works on it");
             return Ok(());
         };

@@ -70,7 +70,11 @@ fn a_scene_with_all_boundaries_runs_and_its_books_balance() {
 #[test]
 fn what_cannot_be_is_refused_with_the_place() {
     let cases: &[(&str, &str, &[&str])] = &[
-        ("pyramid.stl", "cone.stl", &["`walls.0.file` is `cone.stl`", "from where the command is run"]),
+        (
+            "pyramid.stl",
+            "cone.stl",
+            &["`walls.0.file` is `cone.stl`", "the path counts from the folder of the scene"],
+        ),
         ("spacing: \"1.9 mm\"", "spacing: \"0 mm\"", &["`walls.1` is", "positive diameter and spacing"]),
         ("pressure: \"10 Pa\", area: 4e-4", "pressure: \"10 Pa\"", &["`walls.3.moves`", "area: .."]),
         ("frequency: \"50 Hz\"", "frequency: \"-50 Hz\"", &["`walls.2.moves`", "frequency of wall `left`"]),
