@@ -11,12 +11,14 @@
 //! with the mean diameter `d` and the density of the grains. Every fit is made for each seed; errors are standard
 //! errors of the means over seeds.
 
+mod figure;
 mod fit;
 mod material;
 mod plan;
 mod sheared;
 mod table;
 
+pub use figure::{figure, plot};
 pub use material::{Estimate, Jop, Linear, MaterialFile, Point};
 pub use plan::Plan;
 pub use table::table;
@@ -26,19 +28,23 @@ use crate::scene::{Dimension, Scene};
 use crate::validate::parallel;
 use granular_core::{D2, D3, Dim};
 use sheared::{Flow, Stiffness};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Largest inertial number that counts as slow: the critical state.
 const SLOW: f64 = 0.02;
+
+/// Told after each run how many are done, and of how many.
+pub type Told<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Shears samples of the grains of a scene.
 ///
 /// # Errors
 /// When the scene has no grading, or a run stops.
-pub fn friction(scene: &Scene, plan: &Plan) -> Result<MaterialFile, Failure> {
+pub fn friction(scene: &Scene, plan: &Plan, told: Told<'_>) -> Result<MaterialFile, Failure> {
     let scene = &with_own_contacts(scene);
     match scene.dimension {
-        Dimension::Plane => calibrate::<D2>(scene, plan),
-        Dimension::Space => calibrate::<D3>(scene, plan),
+        Dimension::Plane => calibrate::<D2>(scene, plan, told),
+        Dimension::Space => calibrate::<D3>(scene, plan, told),
     }
 }
 
@@ -72,13 +78,16 @@ enum Outcome {
     Stiffness(Stiffness),
 }
 
-fn calibrate<D: Dim>(scene: &Scene, plan: &Plan) -> Result<MaterialFile, Failure> {
+fn calibrate<D: Dim>(scene: &Scene, plan: &Plan, told: Told<'_>) -> Result<MaterialFile, Failure> {
     let tasks = plan.tasks();
+    let done = AtomicUsize::new(0);
     let outcomes = parallel::each(&tasks, |task| {
-        Ok(match task.inertial_number {
+        let outcome = match task.inertial_number {
             Some(number) => Outcome::Flow(sheared::shear::<D>(scene, plan, task.seed, task.level, number)?),
             None => Outcome::Stiffness(sheared::compress::<D>(scene, plan, task.seed, task.level)?),
-        })
+        };
+        told(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
+        Ok(outcome)
     })?;
     let mut flows = Vec::new();
     let mut stiffness = Vec::new();
@@ -117,10 +126,12 @@ fn summary(scene: &Scene, plan: &Plan, flows: &[(Task, Flow)], stiffness: &[Stif
     MaterialFile {
         version: 1,
         title: scene.title.clone(),
+        dimension: scene.dimension,
         grains: plan.grains,
         seeds: plan.seeds,
         density: flows.first().map_or(f64::NAN, |(_, flow)| flow.density),
         diameter: flows.first().map_or(f64::NAN, |(_, flow)| flow.diameter),
+        contact_friction: flows.first().map_or(f64::NAN, |(_, flow)| flow.contact_friction),
         critical_friction: per_seed(&fit::mean, &friction, &slow),
         critical_angle: per_seed(&|points| fit::mean(points).atan().to_degrees(), &friction, &slow),
         peak_friction: of_peaks(|flow| flow.peak_friction),

@@ -1,6 +1,7 @@
 //! The file that a calibration leaves for continuum solvers.
 
 use crate::failure::Failure;
+use crate::scene::Dimension;
 use crate::validate::fit::mean_and_error;
 use serde::{Deserialize, Serialize};
 
@@ -68,6 +69,8 @@ pub struct MaterialFile {
     pub version: u32,
     /// Title of the scene.
     pub title: String,
+    /// Plane or space: stresses of the plane are per metre of depth.
+    pub dimension: Dimension,
     /// Grains in a sample.
     pub grains: usize,
     /// Number of seeds.
@@ -76,6 +79,8 @@ pub struct MaterialFile {
     pub density: f64,
     /// Mean diameter of the grains \[m\].
     pub diameter: f64,
+    /// Friction between two grains \[-\].
+    pub contact_friction: f64,
     /// Shear over normal stress of slow flow, inertial number below 0.02 \[-\].
     pub critical_friction: Estimate,
     /// Its angle \[degrees\].

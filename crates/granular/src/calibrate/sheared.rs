@@ -24,6 +24,8 @@ const WINDOW: usize = 8;
 const SMALL: f64 = 0.2;
 /// Inertial number of that compression.
 const GENTLE: f64 = 1e-4;
+/// Strokes of the cell for which the packing rests before it: what still moves in it would be taken for stiffness.
+const REST: u64 = 20;
 
 /// A steady flow.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +39,7 @@ pub(super) struct Flow {
     pub(super) peak_dilation: f64,
     pub(super) density: f64,
     pub(super) diameter: f64,
+    pub(super) contact_friction: f64,
 }
 
 /// Elastic constants of a packing.
@@ -53,6 +56,7 @@ struct Packing<D: Dim> {
     stress: f64,
     density: f64,
     diameter: f64,
+    friction: f64,
 }
 
 /// The grains of a scene in a cell of their own, without friction.
@@ -125,16 +129,20 @@ fn prepare<D: Dim>(scene: &Scene, plan: &Plan, seed: u64, level: f64) -> Result<
         advance(&mut dem, dt, steps)?;
         strokes += 1.0;
     }
-    let friction = scene.materials.values().next();
-    let wanted = match &scene.sample {
-        Some(Sample::Column { material, .. } | Sample::Cell { material, .. }) => {
-            scene.materials.get(material)
-        }
-        _ => friction,
-    };
-    dem.set_friction(material, wanted.map_or(0.0, |spec| spec.friction));
+    let friction = friction_of_grains(scene);
+    dem.set_friction(material, friction);
     let dt = model.time_step.unwrap_or_else(|| dem.recommended_step());
-    Ok(Packing { dem, dt, stress, density, diameter })
+    Ok(Packing { dem, dt, stress, density, diameter, friction })
+}
+
+/// Friction of the material of the sample.
+fn friction_of_grains(scene: &Scene) -> f64 {
+    match &scene.sample {
+        Some(Sample::Column { material, .. } | Sample::Cell { material, .. }) => {
+            scene.materials.get(material).map_or(0.0, |spec| spec.friction)
+        }
+        _ => 0.0,
+    }
 }
 
 fn empty<D: Dim>() -> Result<Dem<D>, Failure> {
@@ -183,7 +191,8 @@ pub(super) fn shear<D: Dim>(
     level: f64,
     inertial_number: f64,
 ) -> Result<Flow, Failure> {
-    let Packing { mut dem, dt, stress, density, diameter } = prepare::<D>(scene, plan, seed, level)?;
+    let Packing { mut dem, dt, stress, density, diameter, friction: contact_friction } =
+        prepare::<D>(scene, plan, seed, level)?;
     let rate = inertial_number / (diameter * (density / stress).sqrt());
     let driven = CellControl::default().with(0, D::UP, Control::Rate(rate)).with(
         D::UP,
@@ -223,6 +232,7 @@ pub(super) fn shear<D: Dim>(
         peak_dilation,
         density,
         diameter,
+        contact_friction,
     })
 }
 
@@ -243,9 +253,11 @@ pub(super) fn compress<D: Dim>(
     seed: u64,
     level: f64,
 ) -> Result<Stiffness, Failure> {
-    let Packing { mut dem, dt, stress, density, diameter } = prepare::<D>(scene, plan, seed, level)?;
+    let Packing { mut dem, dt, stress, density, diameter, .. } = prepare::<D>(scene, plan, seed, level)?;
     control(&mut dem, CellControl::default())?;
-    let rate = GENTLE / (diameter * (density / stress).sqrt());
+    let stroke = diameter * (density / stress).sqrt();
+    advance(&mut dem, dt, REST * (stroke / dt).ceil() as u64)?;
+    let rate = GENTLE / stroke;
     let before = dem.cell_stress().unwrap_or_default();
     control(&mut dem, CellControl::default().with(D::UP, D::UP, Control::Rate(-rate)))?;
     let steps = (SMALL * level / (rate * dt)).ceil() as u64;

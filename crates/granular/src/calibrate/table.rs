@@ -1,6 +1,7 @@
 //! What a calibration prints.
 
 use super::{Estimate, MaterialFile};
+use crate::scene::Dimension;
 use std::fmt::Write;
 
 /// Critical-state angle that the thesis claims for disks with friction 0.53 \[degrees\].
@@ -9,16 +10,21 @@ const CLAIMED: [f64; 2] = [22.0, 24.0];
 /// The calibration as text, with the claim of the thesis beside it.
 pub fn table(file: &MaterialFile) -> String {
     let mut text = String::new();
+    let unit = if file.dimension == Dimension::Plane { "N/m" } else { "Pa" };
     let both = |estimate: Estimate| format!("{:.4} +- {:.4}", estimate.value, estimate.error);
     let _ = writeln!(
         text,
-        "{} grains of {:.4e} m, means and standard errors over {} seeds",
-        file.grains, file.diameter, file.seeds
+        "{} grains of {:.4e} m with friction {}, means and standard errors over {} seeds",
+        file.grains, file.diameter, file.contact_friction, file.seeds
     );
     let _ = writeln!(
         text,
         "\n{:>10} {:>20} {:>20} {:>20} {:>20}",
-        "stress/M", "normal stress [Pa]", "inertial number", "friction", "solid fraction"
+        "stress/M",
+        format!("normal stress [{unit}]"),
+        "inertial number",
+        "friction",
+        "solid fraction"
     );
     for point in &file.points {
         let stress = format!("{:.1} +- {:.1}", point.normal_stress.value, point.normal_stress.error);
@@ -31,6 +37,7 @@ pub fn table(file: &MaterialFile) -> String {
             both(point.solid_fraction)
         );
     }
+    let young = format!("Young's modulus [{unit}]");
     let rows = [
         ("critical friction", both(file.critical_friction)),
         ("critical angle [deg]", both(file.critical_angle)),
@@ -43,24 +50,28 @@ pub fn table(file: &MaterialFile) -> String {
         ("I_0 of Jop", both(file.jop.inertial_number)),
         ("solid fraction at rest", both(file.solid_fraction.static_friction)),
         ("its slope over I", both(file.solid_fraction.slope)),
-        (
-            "Young's modulus [Pa]",
-            format!("{:.4e} +- {:.1e}", file.young_modulus.value, file.young_modulus.error),
-        ),
+        (young.as_str(), format!("{:.4e} +- {:.1e}", file.young_modulus.value, file.young_modulus.error)),
         ("Poisson's ratio", both(file.poisson_ratio)),
     ];
     text.push('\n');
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<24} {value}");
     }
-    let angle = file.critical_angle.value;
+    if file.dimension == Dimension::Plane {
+        text += &claim(file);
+    }
+    text
+}
+
+/// What the thesis claims for disks.
+fn claim(file: &MaterialFile) -> String {
+    let [angle, peak] =
+        [file.critical_friction, file.peak_friction].map(|friction| friction.value.atan().to_degrees());
     let inside = (CLAIMED[0]..=CLAIMED[1]).contains(&angle);
     let verdict = if inside { "agrees" } else { "differs" };
-    let _ = writeln!(
-        text,
-        "\nthe thesis claims 22 to 24 degrees for 1078 disks with friction 0.53 between two layers of fixed grains; here \
-         {angle:.1}: {verdict}. Here no grain is held. Simple shear of disks with \
-         friction 0.4 gives a friction of 0.25 + 1.1 I, 14 degrees at rest [DaCruz2005]."
-    );
-    text
+    format!(
+        "\nthe thesis claims 22 to 24 degrees for the critical state of 1078 disks with friction 0.53 between two layers of \
+         fixed grains; here {angle:.1}: {verdict}. The peak of dense samples is {peak:.1} degrees here. Simple shear of disks with \
+         friction 0.4 gives a friction of 0.25 + 1.1 I, 14 degrees at rest [DaCruz2005].\n"
+    )
 }

@@ -3,14 +3,15 @@
 use super::{Common, show};
 use clap::Args;
 use granular::failure::Failure;
-use granular::{run, sweep};
+use granular::{calibrate, run, sweep};
 use serde_json::json;
 use std::path::PathBuf;
 
 /// What `granular plot` takes.
 #[derive(Args, Debug)]
 pub(super) struct Plot {
-    /// Folder of a run or of a sweep; several sweeps make one figure, in the folder of the first.
+    /// Folder of a run or of a sweep; several sweeps make one figure, in the folder of the first. Or a material file of
+    /// `granular calibrate`, whose figure stands beside it.
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Of a sweep: the axis along x, its first one by default; or a column of its table, of which each run has its own value.
@@ -40,6 +41,9 @@ impl Plot {
         let runs: Vec<&PathBuf> = folders.iter().filter(|folder| !sweep::is_sweep(folder)).collect();
         let paths = match runs.first() {
             None => vec![sweep::plot(&folders, &view)?],
+            Some(file) if folders.len() == 1 && view == sweep::View::default() && file.is_file() => {
+                vec![calibrate::plot(file)?]
+            }
             Some(run) if folders.len() == 1 && view == sweep::View::default() => run::plot(run)?,
             Some(run) => {
                 let reason = "holds no sweep (no sweep.json); several folders, --x, --y, --by, --log, --fit and \

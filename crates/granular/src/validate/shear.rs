@@ -34,7 +34,7 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     // The template resists rolling so that its deposits come to rest; the grains of the thesis do not.
     let scene = Collapse::of(plan.grains).set("materials.glass.rolling_friction=0".to_owned()).scene()?;
     let scene: Scene = scene.parse().map_err(|problem| Failure::Scene(vec![problem]))?;
-    let file = calibrate::friction(&scene, &plan)?;
+    let file = calibrate::friction(&scene, &plan, &|_, _| {})?;
     servo(rows, &file);
     friction(rows, &file);
     dilation(rows, &file);

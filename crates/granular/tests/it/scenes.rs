@@ -81,6 +81,10 @@ const SHORTENED: &[(&str, &[&str])] = &[
         &["sample.extent=Grains(200)", "stages.0.end=For(\"0.02 s\")", "stages.1.end=For(\"0.06 s\")"],
     ),
     (
+        "ch4_calibration",
+        &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.01 s\")"],
+    ),
+    (
         "ch4_collapse_3d",
         &[
             "sample.extent=Grains(200)",
