@@ -167,6 +167,7 @@ fn points(plan: &Plan, flows: &[(Task, Flow)]) -> Vec<Point> {
         points.push(Point {
             stress_over_modulus: level,
             normal_stress: of(|flow| flow.normal_stress),
+            held_stress: of(|flow| flow.held_stress),
             inertial_number: of(|flow| flow.inertial_number),
             friction: of(|flow| flow.friction),
             solid_fraction: of(|flow| flow.solid_fraction),

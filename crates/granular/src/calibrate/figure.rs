@@ -111,6 +111,7 @@ mod tests {
         let point = |level: f64, number: f64| Point {
             stress_over_modulus: level,
             normal_stress: exact(1e3),
+            held_stress: Estimate::default(),
             inertial_number: exact(number),
             friction: exact(0.25 + number),
             solid_fraction: exact(0.8 - 0.3 * number),

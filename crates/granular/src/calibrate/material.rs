@@ -6,7 +6,7 @@ use crate::validate::fit::mean_and_error;
 use serde::{Deserialize, Serialize};
 
 /// A mean over seeds and its standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Estimate {
     /// Mean.
@@ -53,6 +53,9 @@ pub struct Point {
     pub stress_over_modulus: f64,
     /// Normal stress \[Pa; N/m in the plane\].
     pub normal_stress: Estimate,
+    /// The same less what the motion of the cell took: the one asked for, but for the looks. Not kept in files.
+    #[serde(skip)]
+    pub held_stress: Estimate,
     /// Inertial number \[-\].
     pub inertial_number: Estimate,
     /// Shear over normal stress \[-\].

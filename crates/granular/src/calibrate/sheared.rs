@@ -31,6 +31,8 @@ const REST: u64 = 20;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flow {
     pub(super) normal_stress: f64,
+    /// The same less what the motion of the cell took: the one asked for.
+    pub(super) held_stress: f64,
     pub(super) inertial_number: f64,
     pub(super) friction: f64,
     pub(super) solid_fraction: f64,
@@ -181,6 +183,8 @@ struct Look {
     shear: f64,
     normal: f64,
     solid_fraction: f64,
+    /// Strain along the upward axis and its rate \[1/s\].
+    rise: [f64; 2],
 }
 
 /// Shears a fresh sample along x with the gradient along the upward axis.
@@ -212,6 +216,7 @@ pub(super) fn shear<D: Dim>(
             shear: -0.5 * (stress.at(0, D::UP) + stress.at(D::UP, 0)),
             normal: stress.at(D::UP, D::UP),
             solid_fraction: dem.solid_fraction().unwrap_or(f64::NAN),
+            rise: [cell.strain(), cell.gradient()].map(|matrix| matrix.at(D::UP, D::UP)),
         });
         if cell.strain().at(0, D::UP) >= end {
             break;
@@ -223,8 +228,10 @@ pub(super) fn shear<D: Dim>(
     let normal_stress = mean(|look| look.normal);
     let peak_friction = looks.windows(WINDOW).map(friction_of).fold(f64::NEG_INFINITY, f64::max);
     let peak_dilation = looks.windows(WINDOW).map(dilation_of).fold(f64::NEG_INFINITY, f64::max);
+    let taken = dem.cell().map_or(0.0, |cell| taken_by_motion(cell.control(), &steady, rate));
     Ok(Flow {
         normal_stress,
+        held_stress: normal_stress - taken,
         inertial_number: rate * diameter * (density / normal_stress).sqrt(),
         friction: mean(|look| look.shear) / normal_stress,
         solid_fraction: mean(|look| look.solid_fraction),
@@ -234,6 +241,15 @@ pub(super) fn shear<D: Dim>(
         diameter,
         contact_friction,
     })
+}
+
+/// Mean stress that the cell takes to move: by its law, `sigma - target = I L' + eta L` with the rate `L` of its height.
+fn taken_by_motion(control: &CellControl, looks: &[&Look], shear_rate: f64) -> f64 {
+    let (Some(first), Some(last)) = (looks.first(), looks.last()) else { return f64::NAN };
+    let turn = control.response / std::f64::consts::TAU;
+    let (inertia, damping) = (control.modulus * turn * turn, 2.0 * control.modulus * turn);
+    let [rise, rate] = [0, 1].map(|k| last.rise[k] - first.rise[k]);
+    (inertia * rate + damping * rise) * shear_rate / (last.strain - first.strain)
 }
 
 fn friction_of(looks: &[Look]) -> f64 {
