@@ -11,10 +11,20 @@ use crate::ledger::{Losses, Tally};
 use granular_core::{Dim, Linear};
 use multiversion::multiversion;
 
-/// Contacts of a batch: enough that the loop is entered rarely, few enough for the nearest cache.
-const BATCH: usize = 16;
+/// Places of a batch: enough that the loop is entered rarely, few enough for the nearest cache.
+const BATCH: usize = 32;
 /// The loop runs over whole registers; what the last one holds too much is not read.
 const WIDTH: usize = 4;
+const REGISTERS: usize = BATCH / WIDTH;
+
+/// Contacts of one law share a register.
+#[derive(Clone, Copy, Debug, Default)]
+struct Register {
+    law: usize,
+    /// The next free place in the batch, and the first one behind the register.
+    next: usize,
+    end: usize,
+}
 
 /// Where the outcome of a contact goes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,12 +37,19 @@ pub(crate) struct Address {
     pub(crate) memory: u32,
     /// What the second one gets, among all that the block owes; without meaning at home.
     pub(crate) owed: u32,
+    /// The place in the batch.
+    pub(crate) place: u32,
 }
 
-/// Near pairs under one law.
+/// Near pairs.
 pub(crate) struct Batch<D: Dim, L: ContactLaw<D>, const LEDGER: bool> {
-    pub(crate) len: usize,
-    pub(crate) addresses: [Address; BATCH],
+    len: usize,
+    /// In the order of the list.
+    addresses: [Address; BATCH],
+    registers: [Register; REGISTERS],
+    used: usize,
+    /// The register that was filled last, as it is now.
+    open: Register,
     gathered: Gathered<D>,
     pub(crate) memories: [L::Memory; BATCH],
     /// Share of the step during which the surfaces overlap; zero when they do not meet.
@@ -68,6 +85,9 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
         Self {
             len: 0,
             addresses: [Address::default(); BATCH],
+            registers: [Register::default(); REGISTERS],
+            used: 0,
+            open: Register::default(),
             gathered: Gathered {
                 arm: vectors,
                 distance_squared: numbers,
@@ -90,18 +110,53 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
         }
     }
 
-    pub(crate) fn is_full(&self) -> bool {
-        self.len == BATCH
+    /// The next place for a contact of this law; none when the batch is full.
+    #[inline(always)]
+    pub(crate) fn place(&mut self, law: usize) -> Option<usize> {
+        if self.open.law != law || self.open.next == self.open.end {
+            self.open(law)?;
+        }
+        self.open.next += 1;
+        Some(self.open.next - 1)
+    }
+
+    /// Opens a register that was left for another law, or a new one; none when all are in use.
+    fn open(&mut self, law: usize) -> Option<()> {
+        let used = &mut self.registers[..self.used];
+        if let Some(left) = used.iter_mut().find(|register| register.end == self.open.end) {
+            *left = self.open;
+        }
+        let known = used.iter().find(|register| register.law == law && register.next < register.end);
+        self.open = match known {
+            Some(known) => *known,
+            None if self.used == REGISTERS => return None,
+            None => {
+                let next = self.used * WIDTH;
+                self.used += 1;
+                Register { law, next, end: next + WIDTH }
+            }
+        };
+        self.registers[self.open.end / WIDTH - 1] = self.open;
+        Some(())
     }
 
     /// Notes a pair at this distance.
     #[inline(always)]
     pub(crate) fn note(&mut self, address: Address, (arm, distance_squared): (D::Vec, f64)) {
-        let k = self.len % BATCH;
+        let (k, place) = (self.len % BATCH, address.place as usize % BATCH);
         self.addresses[k] = address;
-        self.gathered.arm[k] = arm;
-        self.gathered.distance_squared[k] = distance_squared;
+        self.gathered.arm[place] = arm;
+        self.gathered.distance_squared[place] = distance_squared;
         self.len = k + 1;
+    }
+
+    /// Contacts in the order of the list.
+    pub(crate) fn addresses(&self) -> impl Iterator<Item = Address> + '_ {
+        self.addresses.iter().take(self.len).copied()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        (self.len, self.used, self.open) = (0, 0, Register::default());
     }
 
     /// Gathers what is read of the pairs.
@@ -109,7 +164,8 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
     pub(crate) fn gather(&mut self, view: &View<'_, D>, memory: &[L::Memory]) {
         let view = &view.cut::<L>();
         let to = &mut self.gathered;
-        for (k, address) in self.addresses.iter().enumerate().take(self.len) {
+        for address in self.addresses.iter().take(self.len) {
+            let k = address.place as usize % BATCH;
             let (first, second) = (address.first as usize, address.second as usize);
             let (own, other) = (view.body::<L>(first), view.body::<L>(second));
             self.memories[k] = memory[address.memory as usize];
@@ -128,10 +184,17 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
 
     /// Loads all contacts. Returns whether one is too deep.
     #[inline(always)]
-    pub(crate) fn load(&mut self, view: &View<'_, D>, law: &L) -> bool {
-        let Self { len, gathered, memories, presence, force, torques, losses, .. } = self;
-        let count = ((*len + WIDTH - 1) & !(WIDTH - 1)).min(BATCH);
-        load::<D, L, LEDGER>((view, law), (gathered, count), memories, presence, force, torques, losses)
+    pub(crate) fn load(&mut self, view: &View<'_, D>, laws: &[L]) -> bool {
+        let Self { registers, used, gathered, memories, presence, force, torques, losses, .. } = self;
+        let mut deep = false;
+        let mut from = 0;
+        for run in registers[..*used].chunk_by(|a, b| a.law == b.law) {
+            let places = (from, from + run.len() * WIDTH);
+            let law = (view, &laws[run[0].law]);
+            deep |= load::<D, L, LEDGER>(law, (gathered, places), memories, presence, force, torques, losses);
+            from = places.1;
+        }
+        deep
     }
 
     /// Losses of a contact.
@@ -173,7 +236,7 @@ impl<D: Dim> Gathered<D> {
 #[multiversion(targets("x86_64+avx2"))]
 fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     (view, law): (&View<'_, D>, &L),
-    (gathered, count): (&Gathered<D>, usize),
+    (gathered, (from, to)): (&Gathered<D>, (usize, usize)),
     memories: &mut [L::Memory; BATCH],
     presence: &mut [f64; BATCH],
     force: &mut [D::Vec; BATCH],
@@ -181,9 +244,9 @@ fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     losses: &mut [[f64; BATCH]; 5],
 ) -> bool {
     let mut deep = 0_u64;
-    let count = count.min(BATCH);
-    let mut k = 0;
-    while k < count {
+    let to = to.min(BATCH);
+    let mut k = from;
+    while k < to {
         let pair = gathered.pair(k);
         let (meeting, arms) = pair.meet::<L>(view);
         let mut tally = Tally::<LEDGER>::default();
@@ -209,117 +272,4 @@ fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::law::{HertzMindlin, LinearFrictional, Rolling, Twisting};
-    use crate::material::{Elasticity, Material, Materials, Tension};
-    use granular_core::{D2, D3, Spin, Vector};
-
-    /// Numbers between -1 and 1 without a pattern.
-    fn noise(seed: usize) -> f64 {
-        let mut state = (seed as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        state = (state ^ (state >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        ((state >> 11) as f64) / (1_u64 << 52) as f64 - 1.0
-    }
-
-    /// Grains in a row, some of which meet the next one within the step, for good, or not at all.
-    struct Row<D: Dim> {
-        position: Vec<D::Vec>,
-        velocity: Vec<D::Vec>,
-        spin: Vec<D::Spin>,
-        radius: Vec<f64>,
-        mass: Vec<f64>,
-    }
-
-    impl<D: Dim> Row<D> {
-        fn of(count: usize) -> Self {
-            let vector = |k: usize, size: f64| {
-                let parts: Vec<f64> = (0..D::N).map(|axis| size * noise(7 * k + axis)).collect();
-                D::Vec::from_slice(&parts).unwrap()
-            };
-            let spins =
-                (0..count).map(|k| D::Spin::of_components([noise(k), noise(k + 91), noise(k + 17)]) * 50.0);
-            Self {
-                position: (0..count).map(|k| D::Vec::along(0, 2e-3 * k as f64) + vector(k, 2e-5)).collect(),
-                velocity: (0..count).map(|k| vector(k + 1000, 0.5)).collect(),
-                spin: spins.collect(),
-                radius: (0..count).map(|k| 1e-3 + 1e-5 * noise(k + 5)).collect(),
-                mass: (0..count).map(|k| 1e-5 + 1e-6 * noise(k + 6)).collect(),
-            }
-        }
-
-        fn view(&self) -> View<'_, D> {
-            View {
-                position: &self.position,
-                velocity: &self.velocity,
-                spin: &self.spin,
-                start_velocity: &self.velocity,
-                start_spin: &self.spin,
-                radius: &self.radius,
-                mass: &self.mass,
-                material: &[],
-                first_material: 0,
-                walls: &[],
-                poses: &[],
-                cell: None,
-                dt: 1e-6,
-                last_dt: 1.1e-6,
-                predicts: true,
-                margin: 0.0,
-                arm_share: 0.5,
-            }
-        }
-    }
-
-    /// Each contact of a batch, however full, has the bits of the contact alone.
-    fn a_batch_is_its_contacts<D: Dim, L: ContactLaw<D>>() {
-        let mut materials = Materials::new();
-        let elasticity = Some(Elasticity { young_modulus: 5e7, poisson_ratio: 0.25 });
-        let material =
-            Material { elasticity, rolling_friction: 0.1, twisting_friction: 0.1, ..Material::default() };
-        materials.add(material).unwrap();
-        let law = L::between(&materials.pair(0, 0), Tension::Cut);
-        let row = Row::<D>::of(BATCH + 1);
-        let view = row.view();
-        let mut met = 0;
-        for count in 1..=BATCH {
-            let mut batch = Batch::<D, L, true>::new();
-            for k in 0..count {
-                let arm = row.position[k + 1] - row.position[k];
-                let address = Address { first: k as u32 + 1, second: k as u32, memory: k as u32, owed: 0 };
-                batch.note(address, (arm, arm.length_squared()));
-            }
-            let memory = vec![L::Memory::default(); count];
-            batch.gather(&view, &memory);
-            // Twice, so that springs are stretched.
-            batch.load(&view, &law);
-            batch.load(&view, &law);
-            for k in 0..count {
-                let (meeting, arms) = batch.pair(k).meet::<L>(&view);
-                let (mut memory, mut tally) = (L::Memory::default(), Tally::<true>::default());
-                law.load(&meeting, &mut memory, &mut tally);
-                let before = tally.losses();
-                let load = law.load(&meeting, &mut memory, &mut tally);
-                assert_eq!(batch.presence[k], meeting.presence);
-                if meeting.presence == 0.0 {
-                    continue;
-                }
-                met += 1;
-                assert_eq!(batch.force[k], push_of::<D, L>(&load, meeting.normal));
-                assert_eq!(batch.torques[1][k], -load.rolling - load.tangential * arms.1);
-                assert_eq!(batch.memories[k], memory);
-                let (given, both) = (batch.losses(k).total(), tally.losses().total());
-                assert!((before.total() + given - both).abs() <= 1e-12 * both.abs(), "{given} {both}");
-            }
-        }
-        assert!(met > BATCH && met < BATCH * (BATCH + 1) / 2, "{met}");
-    }
-
-    #[test]
-    fn contacts_in_a_batch_have_the_bits_of_contacts_alone() {
-        a_batch_is_its_contacts::<D2, LinearFrictional>();
-        a_batch_is_its_contacts::<D2, Rolling<HertzMindlin>>();
-        a_batch_is_its_contacts::<D3, LinearFrictional>();
-        a_batch_is_its_contacts::<D3, Twisting<HertzMindlin>>();
-    }
-}
+mod tests;

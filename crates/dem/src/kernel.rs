@@ -75,13 +75,13 @@ impl<L> Copy for Laws<'_, L> {}
 impl<'a, L> Laws<'a, L> {
     #[inline(always)]
     pub(crate) fn between(self, a: u8, b: u8) -> &'a L {
-        &self.of(a)[b as usize]
+        &self.list[self.number(a, b)]
     }
 
-    /// The laws of a material with every other.
+    /// The place of a law in the list.
     #[inline(always)]
-    pub(crate) fn of(self, material: u8) -> &'a [L] {
-        &self.list[material as usize * self.materials..][..self.materials]
+    pub(crate) fn number(self, a: u8, b: u8) -> usize {
+        a as usize * self.materials + b as usize
     }
 }
 
@@ -176,7 +176,7 @@ pub(crate) struct Kernel<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> {
     pub(crate) trouble: Option<Trouble>,
 }
 
-impl<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'a, D, L, LEDGER> {
+impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
     #[inline(always)]
     pub(crate) fn pairs(&mut self, list: &mut BlockList<L::Memory>, outgoing: &mut [Owed<D>]) {
         self.force.fill(D::Vec::ZERO);
@@ -185,44 +185,51 @@ impl<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'a, D, L, LEDGER> 
         let mut batch = Batch::<D, L, LEDGER>::new();
         let mut cursor = Cursor::default();
         loop {
-            let law = self.note_near(list, &mut cursor, &mut batch);
-            let Some(law) = law else { break };
+            let done = self.note_near(list, &mut cursor, &mut batch);
             batch.gather(self.view, &list.memory);
-            let deep = batch.load(self.view, law);
-            self.hand_out(law, &mut batch, deep, list, outgoing);
+            let deep = batch.load(self.view, self.laws.list);
+            self.hand_out(&batch, deep, list, outgoing);
+            batch.clear();
+            if done {
+                break;
+            }
         }
     }
 
-    /// Notes near pairs of one law from the cursor on, as many as a batch takes; none at the end.
+    /// Notes near pairs from the cursor on, as many as a batch takes. Returns whether these were the last.
     #[inline(always)]
     fn note_near(
         &mut self,
         list: &mut BlockList<L::Memory>,
         cursor: &mut Cursor,
         batch: &mut Batch<D, L, LEDGER>,
-    ) -> Option<&'a L> {
+    ) -> bool {
         let view = self.view;
-        let mut batch_law = None;
         while let Some(&end) = list.starts.get(cursor.local + 1) {
             let first = self.start + cursor.local;
             let (position, radius) = (view.position[first], view.radius[first] + view.margin);
-            let laws = self.laws.of(view.material_of(first));
+            let material = view.material_of(first);
             for place in cursor.place..end as usize {
                 let second = list.partners[place] as usize;
                 let arm = position - view.position[second];
                 let reach = radius + view.radius[second];
                 let distance_squared = arm.length_squared();
                 if distance_squared < reach * reach {
-                    let law = &laws[view.material_of(second) as usize];
-                    if batch.is_full() || !std::ptr::eq(*batch_law.get_or_insert(law), law) {
+                    let law = self.laws.number(material, view.material_of(second));
+                    let Some(in_batch) = batch.place(law) else {
                         cursor.place = place;
-                        return batch_law;
-                    }
-                    let (first, second) = (first as u32, second as u32);
-                    let address = Address { first, second, memory: place as u32, owed: cursor.owed as u32 };
+                        return false;
+                    };
+                    let address = Address {
+                        first: first as u32,
+                        second: second as u32,
+                        memory: place as u32,
+                        owed: cursor.owed as u32,
+                        place: in_batch as u32,
+                    };
                     batch.note(address, (arm, distance_squared));
                 } else if list.touching[place] {
-                    let law = &laws[view.material_of(second) as usize];
+                    let law = self.laws.between(material, view.material_of(second));
                     list.touching[place] = false;
                     law.release(&list.memory[place], &mut self.tally);
                     list.memory[place] = L::Memory::default();
@@ -232,30 +239,29 @@ impl<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'a, D, L, LEDGER> 
             cursor.place = end as usize;
             cursor.local += 1;
         }
-        batch_law
+        true
     }
 
     /// Adds the loads of a batch to both grains.
     #[inline(always)]
     fn hand_out(
         &mut self,
-        law: &L,
-        batch: &mut Batch<D, L, LEDGER>,
+        batch: &Batch<D, L, LEDGER>,
         deep: bool,
         list: &mut BlockList<L::Memory>,
         outgoing: &mut [Owed<D>],
     ) {
-        let loads = &*batch;
-        for (k, to) in batch.addresses.iter().enumerate().take(batch.len) {
+        for to in batch.addresses() {
+            let k = to.place as usize;
+            let (first, second) = (to.first as usize, to.second as usize);
             let kept = &mut list.memory[to.memory as usize];
             let touching = &mut list.touching[to.memory as usize];
-            let first = to.first as usize - self.start;
-            let home = (to.second as usize).checked_sub(self.start);
             // What is not a number goes on to the grains, where it is found.
-            if loads.presence[k] == 0.0 {
+            if batch.presence[k] == 0.0 {
                 if *touching {
                     *touching = false;
-                    law.release(kept, &mut self.tally);
+                    let materials = [first, second].map(|grain| self.view.material_of(grain));
+                    self.laws.between(materials[0], materials[1]).release(kept, &mut self.tally);
                     *kept = L::Memory::default();
                 }
                 continue;
@@ -264,23 +270,23 @@ impl<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'a, D, L, LEDGER> 
             *kept = batch.memories[k];
             if deep {
                 let pair = batch.pair(k);
-                self.guard(to.first as usize, pair.overlap(), pair.own.radius.min(pair.other.radius));
+                self.guard(first, pair.overlap(), pair.own.radius.min(pair.other.radius));
             }
-            self.tally.add(|| loads.losses(k));
-            self.force[first] += loads.force[k];
+            self.tally.add(|| batch.losses(k));
+            let first = first - self.start;
+            self.force[first] += batch.force[k];
             if L::TANGENTIAL {
-                self.torque[first] += loads.torques[0][k];
+                self.torque[first] += batch.torques[0][k];
             }
-            if let Some(second) = home {
-                self.force[second] -= loads.force[k];
+            if let Some(second) = second.checked_sub(self.start) {
+                self.force[second] -= batch.force[k];
                 if L::TANGENTIAL {
-                    self.torque[second] += loads.torques[1][k];
+                    self.torque[second] += batch.torques[1][k];
                 }
             } else {
-                outgoing[to.owed as usize] = Owed { force: -loads.force[k], torque: loads.torques[1][k] };
+                outgoing[to.owed as usize] = Owed { force: -batch.force[k], torque: batch.torques[1][k] };
             }
         }
-        batch.len = 0;
     }
 
     /// Loads of walls; with `MOVING`, of walls that may move.
