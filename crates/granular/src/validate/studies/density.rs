@@ -14,7 +14,8 @@ use granular_validation_data::COLUMN_DENSITY;
 const SAMPLES: [(&str, f64); 2] = [("dense", 0.83), ("loose", 0.79)];
 const PLANNED: f64 = 0.815;
 /// What is recorded of a column.
-const NUMBERS: [&str; 5] = ["front", "height", "potential_energy", "bulk_density", "energy_residual"];
+const NUMBERS: [&str; 6] =
+    ["front", "height", "potential_energy", "bulk_density", "solid_fraction", "energy_residual"];
 /// Share of the potential energy at the release that may be missing in the balance.
 const RESIDUAL: f64 = 1e-3;
 /// Distances of final densities, and of densities from those of the thesis, over them.
@@ -142,9 +143,15 @@ fn spread(rows: &mut Rows, of: &str, aspect_ratio: f64, [dense, loose]: [&[Recor
 }
 
 fn densities(rows: &mut Rows, of: &str, samples: [&[Recorded]; 2]) {
-    let last = samples.map(|columns| means(columns, |one| one.last("bulk_density")));
+    let last = |name: &str| samples.map(|columns| means(columns, |one| one.last(name)));
+    let [dense, loose] = last("bulk_density");
+    let interior = last("solid_fraction");
     let metric = format!("{of}: bulk density at the end, dense against loose");
-    rows.add(Measure::relative(Tier::Thesis, metric, last[0], last[1], EQUAL).claim());
+    rows.add(
+        Measure::relative(Tier::Thesis, metric, dense, loose, EQUAL)
+            .claim()
+            .note(format!("solid fraction of the interior {:.4} and {:.4}", interior[0], interior[1])),
+    );
     for ((name, _), columns) in SAMPLES.into_iter().zip(samples) {
         let least = |one: &Recorded| one.column("bulk_density").into_iter().fold(f64::INFINITY, f64::min);
         let values = [
