@@ -19,6 +19,12 @@ pub const RESTITUTION: &str = include_str!("../restitution/reference.csv");
 pub const GRADING: &str = include_str!("../grading/reference.csv");
 /// Run-out of columns of aspect ratio 0.8 in the literature.
 pub const COLUMN_RUNOUT: &str = include_str!("../column_runout/reference.csv");
+/// Run-out and height of columns over their aspect ratio in the thesis.
+pub const COLUMN_STUDIES: &str = include_str!("../column_studies/reference.csv");
+/// Run-out and energies of columns over time in the thesis.
+pub const COLUMN_FLOW: &str = include_str!("../column_studies/flow.csv");
+/// Run-out and densities of dense and loose columns in the thesis.
+pub const COLUMN_DENSITY: &str = include_str!("../column_density/reference.csv");
 /// Speed in a started channel over time and height.
 pub const POISEUILLE: &str = include_str!("../poiseuille/reference.csv");
 /// Speed between plates, one of which starts to move, over time and height.

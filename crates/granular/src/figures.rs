@@ -13,7 +13,7 @@ use crate::folder::RunFolder;
 use crate::model::ColumnSize;
 use crate::observers::number_of;
 use crate::run::StageRecord;
-use crate::scene::{FigureSpec, Scene};
+use crate::scene::{FigureSpec, ReferenceCurve, Scene};
 use granular_core::{ShownAs, Simulation};
 use granular_io::figure::{Axis, Chart, Series, Style};
 use granular_io::{Table, read_table};
@@ -47,21 +47,26 @@ pub fn draw(
             std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
         }
         let figure = match spec {
-            FigureSpec::Series { table, columns, .. } => {
-                series(scene, &table_of(folder, table)?, columns).figure()
+            FigureSpec::Series { table, columns, stage, references, .. } => {
+                let stage = stage.as_ref().map(|stage| record(records, stage)).transpose()?;
+                let units = stage.map(|stage| units(scene, stage, column));
+                let chart = series(scene, &table_of(folder, table)?, columns, units);
+                with_references(chart, references).figure()
             }
-            FigureSpec::Runout { table, stage, laws, .. } => {
+            FigureSpec::Runout { table, stage, laws, references, .. } => {
                 let table = table_of(folder, table)?;
-                column::runout(scene, &table, record(records, stage)?, (column, laws)).figure()
+                let drawn = column::Compared { column, laws, references };
+                column::runout(scene, &table, record(records, stage)?, drawn).figure()
             }
             FigureSpec::RadialProfile { fields, stage, times, laws, .. } => {
                 let record = record(records, stage)?;
                 let (times, column) = (times.as_slice(), (column, laws.as_slice()));
                 radial::profile(scene, folder, (fields, times), record, column)?.figure()
             }
-            FigureSpec::Energies { table, stage, .. } => {
+            FigureSpec::Energies { table, stage, references, .. } => {
                 let units = units(scene, record(records, stage)?, column);
-                column::energies(scene, &table_of(folder, table)?, units).figure()
+                let chart = column::energies(scene, &table_of(folder, table)?, units);
+                with_references(chart, references).figure()
             }
             FigureSpec::Flow { fields, color, stage, times, .. } => {
                 let units = units(scene, record(records, stage)?, column);
@@ -212,21 +217,79 @@ fn title(scene: &Scene, what: &str) -> String {
     if scene.title.is_empty() { what.to_owned() } else { format!("{}: {what}", scene.title) }
 }
 
-/// Columns of a table over time.
-fn series(scene: &Scene, table: &Table, columns: &[String]) -> Chart {
+/// Columns of a table over time: all of it over seconds, or from a stage on in its units.
+fn series(scene: &Scene, table: &Table, columns: &[String], units: Option<Units>) -> Chart {
     let unit = columns.first().and_then(|name| table.unit(name)).unwrap_or("-");
     let label = match columns {
         [one] => format!("{} [{unit}]", one.replace('_', " ")),
         _ => format!("[{unit}]"),
     };
     let heading = if scene.title.is_empty() { "Series over time" } else { &scene.title };
-    let mut chart = Chart::new(heading, Axis::linear("time [s]"), Axis::linear(label));
+    let time_label = units.map_or("time [s]", |units| units.time_label());
+    let Units { start, time: scale, .. } =
+        units.unwrap_or(Units { start: f64::NEG_INFINITY, time: 1.0, scaled: false });
+    let mut chart = Chart::new(heading, Axis::linear(time_label), Axis::linear(label));
     let time = table.column("time").unwrap_or_default();
+    let since = |t: f64| if start.is_finite() { (t - start) / scale } else { t };
     for name in columns {
         let values = table.column(name).unwrap_or_default();
-        let points = time.iter().zip(values).map(|(&t, value)| [t, value]).collect();
+        let rows = time.iter().zip(values).filter(|(t, _)| **t >= start);
+        let points = rows.map(|(&t, value)| [since(t), value]).collect();
         let label = if columns.len() > 1 { name.replace('_', " ") } else { String::new() };
         chart = chart.with(Series::new(label, points, Style::Line));
     }
     chart
+}
+
+/// A chart with curves from elsewhere, beside which a curve without a label is this run.
+fn with_references(mut chart: Chart, references: &[ReferenceCurve]) -> Chart {
+    if !references.is_empty() {
+        let unnamed = chart.series.iter_mut().filter(|series| series.label.is_empty());
+        unnamed.for_each(|series| series.label = "this run".to_owned());
+    }
+    for reference in references {
+        let points = reference.points.iter().map(|(x, y)| [*x, *y]).collect();
+        let style = if reference.line { Style::Dashed } else { Style::Markers };
+        chart = chart.with(Series::new(reference.label.clone(), points, style));
+    }
+    chart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let columns = ["time", "bulk_density"].map(|name| (name.to_owned(), "1".to_owned())).to_vec();
+        Table { columns, rows: vec![vec![0.0, 0.7], vec![1.0, 0.8], vec![2.0, 0.9]] }
+    }
+
+    fn scene() -> Scene {
+        let (name, text) = crate::TEMPLATES[2];
+        crate::scene_file::SceneText::new(name, text).parse().unwrap()
+    }
+
+    #[test]
+    fn a_series_from_a_stage_on_counts_in_its_unit() {
+        let names = ["bulk_density".to_owned()];
+        let all = series(&scene(), &table(), &names, None);
+        assert_eq!(all.series[0].points, [[0.0, 0.7], [1.0, 0.8], [2.0, 0.9]]);
+        let units = Units { start: 1.0, time: 0.5, scaled: true };
+        let part = series(&scene(), &table(), &names, Some(units));
+        assert_eq!(part.series[0].points, [[0.0, 0.8], [2.0, 0.9]]);
+    }
+
+    #[test]
+    fn curves_from_elsewhere_lie_beside_this_run() {
+        let bare = series(&scene(), &table(), &["bulk_density".to_owned()], None);
+        assert_eq!(with_references(bare.clone(), &[]), bare);
+        let reference = ReferenceCurve { label: "thesis".to_owned(), points: vec![(0.0, 0.75)], line: true };
+        let beside = with_references(bare, &[reference]);
+        let labels: Vec<&str> = beside.series.iter().map(|series| series.label.as_str()).collect();
+        assert_eq!(labels, ["this run", "thesis"]);
+        assert_eq!(
+            (&beside.series[1].points[..], &beside.series[1].style),
+            (&[[0.0, 0.75]][..], &Style::Dashed)
+        );
+    }
 }

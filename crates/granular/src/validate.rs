@@ -31,6 +31,7 @@ mod packing;
 mod packing_density;
 pub(crate) mod parallel;
 mod plane;
+mod recorded;
 mod reference;
 pub(crate) mod restitution;
 mod rolling;
@@ -39,6 +40,7 @@ mod shear;
 pub mod stability;
 mod stages;
 pub(crate) mod strike;
+mod studies;
 mod table;
 mod tessellation;
 
@@ -134,6 +136,12 @@ pub const CASES: &[Case] = &[
     Case { name: "fluid_mass", about: "mass of a fluid between walls", run: fluid::balance::mass },
     Case { name: "hydrostatic", about: "a fluid at rest under gravity", run: fluid::balance::hydrostatic },
     Case { name: "column_runout", about: "run-out of a column of aspect ratio 0.8", run: claims::run_out },
+    Case {
+        name: "column_studies",
+        about: "columns over their aspect ratio: run-out, height, flow, energies",
+        run: studies::run,
+    },
+    Case { name: "column_density", about: "dense and loose columns", run: studies::density },
 ];
 
 impl Case {

@@ -1,19 +1,26 @@
 //! Figures of a collapsing column: run-out and height, and where the energy goes.
 
-use super::{Units, title};
+use super::{Units, title, with_references};
 use crate::model::ColumnSize;
 use crate::run::StageRecord;
-use crate::scene::Scene;
 use crate::scene::outputs::LawSpec;
+use crate::scene::{ReferenceCurve, Scene};
 use granular_io::Table;
 use granular_io::figure::{Axis, Chart, Panels, Series, Style};
+
+/// What the run-out of a column is drawn beside.
+pub(super) struct Compared<'a> {
+    pub(super) column: Option<ColumnSize>,
+    pub(super) laws: &'a [LawSpec],
+    pub(super) references: &'a [ReferenceCurve],
+}
 
 /// Run-out and height over time, as figures 4.8 to 4.12 of \[Kumar2014\] draw them.
 pub(super) fn runout(
     scene: &Scene,
     table: &Table,
     release: &StageRecord,
-    (column, laws): (Option<ColumnSize>, &[LawSpec]),
+    Compared { column, laws, references }: Compared<'_>,
 ) -> Panels {
     let units = super::units(scene, release, column);
     let width = column.map_or(release.front, |column| column.width);
@@ -35,16 +42,17 @@ pub(super) fn runout(
     } else {
         ["(r − r₀) / r₀ [-]", "H / r₀ [-]", "r₀"]
     };
+    let label = if laws.is_empty() { "" } else { "this run" };
     let mut charts = vec![
         Chart::new("Run-out", Axis::linear(units.time_label()), Axis::linear(spread))
             .note(format!(
                 "a = {aspect:.2}; final run-out {:.3}; running median of {MEDIAN} rows",
                 last(&run_out)
             ))
-            .with(Series::new(if laws.is_empty() { "" } else { "this run" }, run_out, Style::Line)),
+            .with(Series::new(label, run_out, Style::Line)),
         Chart::new("Height", Axis::linear(units.time_label()), Axis::linear(high))
             .note(format!("final height {:.3} {unit}", last(&height)))
-            .with(Series::new(if laws.is_empty() { "" } else { "this run" }, height, Style::Line).colour(1)),
+            .with(Series::new(label, height, Style::Line).colour(1)),
     ];
     for (chart, of_height) in charts.iter_mut().zip([false, true]) {
         for law in laws.iter().filter(|law| law.of_height == of_height) {
@@ -54,6 +62,7 @@ pub(super) fn runout(
             *chart = std::mem::take(chart).with(Series::new(label, level, Style::Dashed).colour(7));
         }
     }
+    charts[0] = with_references(std::mem::take(&mut charts[0]), references);
     Panels::new(title(scene, "run-out and height"), 2, charts)
 }
 

@@ -1,7 +1,7 @@
 //! Profiles and spectra of a fluid, from the files of a run.
 
 use super::spectrum::{Spectrum, spectrum};
-use super::{Metric, four_digits, table_of, title};
+use super::{Metric, four_digits, table_of, title, with_references};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::run::StageRecord;
@@ -50,12 +50,7 @@ pub(super) fn profile(scene: &Scene, table: &Table, record: &StageRecord, spec: 
         let label = format!("t = {} s", four_digits(nearest - record.start));
         chart = chart.with(Series::new(label, points, Style::Line));
     }
-    for reference in spec.references {
-        let points = reference.points.iter().map(|(x, y)| [*x, *y]).collect();
-        let style = if reference.line { Style::Dashed } else { Style::Markers };
-        chart = chart.with(Series::new(reference.label.clone(), points, style));
-    }
-    chart
+    with_references(chart, spec.references)
 }
 
 /// The spectrum of a column from the start of a stage on.

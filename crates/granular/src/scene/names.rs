@@ -91,9 +91,9 @@ impl FigureSpec {
     /// What a figure needs; `front` is the number that says how far the sample spread.
     pub(crate) fn needs(&self, front: &'static str) -> Need<'_> {
         match self {
-            Self::Series { table, columns, .. } => {
+            Self::Series { table, columns, stage, .. } => {
                 let names = columns.iter().map(String::as_str).collect();
-                Need { key: "table", writer: "Table", output: table, names, stage: None }
+                Need { key: "table", writer: "Table", output: table, names, stage: stage.as_deref() }
             }
             Self::Runout { table, stage, .. } => Need {
                 key: "table",

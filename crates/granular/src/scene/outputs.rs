@@ -154,6 +154,13 @@ pub enum FigureSpec {
         table: String,
         /// Columns to draw, at least one.
         columns: Vec<String>,
+        /// Name of the stage from whose start on the columns are drawn, over time in units of sqrt(H/g) of a column; by
+        /// default all of the run is drawn over seconds.
+        #[serde(default)]
+        stage: Option<String>,
+        /// Curves from elsewhere, over the same time.
+        #[serde(default)]
+        references: Vec<ReferenceCurve>,
     },
     /// Run-out and height of a collapsing column over time: lengths over the width of the column,
     /// times over sqrt(H/g).
@@ -167,6 +174,9 @@ pub enum FigureSpec {
         /// Laws of the final run-out and height, to compare.
         #[serde(default)]
         laws: Vec<LawSpec>,
+        /// Curves of the run-out over time from elsewhere.
+        #[serde(default)]
+        references: Vec<ReferenceCurve>,
     },
     /// Height of the surface of a collapsing cylinder over the distance from its axis at several times, in units of its
     /// radius: the highest point of rings two mean radii wide, in each sector of 30 degrees, averaged over sectors.
@@ -191,6 +201,9 @@ pub enum FigureSpec {
         table: String,
         /// Name of the stage at whose start the balance begins.
         stage: String,
+        /// Curves from elsewhere.
+        #[serde(default)]
+        references: Vec<ReferenceCurve>,
     },
     /// Grains, coloured by a field, at several times.
     Flow {

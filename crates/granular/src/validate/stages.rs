@@ -40,7 +40,7 @@ pub(crate) fn run(text: &SceneText) -> Result<(Model, Vec<bool>), Failure> {
     Ok((model, reached))
 }
 
-fn stage(scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<bool, Failure> {
+pub(super) fn stage(scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<bool, Failure> {
     let end = scene.stages[index].end;
     let reached = Arc::new(AtomicBool::new(false));
     let mut observers: Vec<Scheduled> = match end {

@@ -85,6 +85,28 @@ const SHORTENED: &[(&str, &[&str])] = &[
         &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.01 s\")"],
     ),
     (
+        "ch4_density",
+        &[
+            "sample.extent=Grains(100)",
+            "stages.0.end=For(\"0.05 s\")",
+            "stages.1.end=For(\"0.01 s\")",
+            "stages.2.end=For(\"0.01 s\")",
+            "stages.3.end=For(\"0.01 s\")",
+            "stages.4.end=For(\"0.02 s\")",
+            "stages.5.end=For(\"0.02 s\")",
+            "figures.3.times=[0]",
+        ],
+    ),
+    (
+        "ch4_energies",
+        &[
+            "sample.extent=Grains(150)",
+            "stages.0.end=For(\"0.02 s\")",
+            "stages.1.end=For(\"0.06 s\")",
+            "figures.2.times=[0]",
+        ],
+    ),
+    (
         "ch4_collapse_3d",
         &[
             "sample.extent=Grains(200)",
@@ -114,11 +136,17 @@ fn every_example_runs_and_leaves_what_its_scene_asks_for() {
         let name = folder.file_name().unwrap().to_str().unwrap();
         let short = SHORTENED.iter().find(|(known, _)| *known == name);
         let (_, edits) = short.unwrap_or_else(|| panic!("examples/{name} has no line in SHORTENED"));
-        let scene = folder.join("scene.ron");
         let edits: Vec<&str> = edits.iter().flat_map(|edit| ["--set", edit]).collect();
-        let arguments = [&["run", scene.to_str().unwrap(), "--out", name, "--quiet"], &edits[..]].concat();
-        scratch.granular(&arguments).expect(0);
-        assert_outputs(&scratch.path(name));
+        let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        let scenes: Vec<_> = files.filter(|path| path.extension().is_some_and(|end| end == "ron")).collect();
+        assert!(!scenes.is_empty(), "examples/{name} has no scene");
+        for scene in scenes {
+            let out = format!("{name}_{}", scene.file_stem().unwrap().to_str().unwrap());
+            let arguments =
+                [&["run", scene.to_str().unwrap(), "--out", &out, "--quiet"], &edits[..]].concat();
+            scratch.granular(&arguments).expect(0);
+            assert_outputs(&scratch.path(&out));
+        }
         seen += 1;
     }
     assert_eq!(seen, SHORTENED.len(), "SHORTENED has a line without an example");
