@@ -17,7 +17,10 @@ const ELSEWHERE: usize = 7;
 /// When the file cannot be read or is no material file, or the figure cannot be written.
 pub fn plot(path: &Path) -> Result<PathBuf, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;
-    let file = MaterialFile::from_ron(&text).map_err(|failure| failure.with_context(path.display()))?;
+    let file = MaterialFile::from_ron(&text).map_err(|failure| {
+        let no_material = "is a file, but none of `granular calibrate`";
+        failure.with_context(format_args!("{}: {no_material}", path.display()))
+    })?;
     let stem = path.with_extension("");
     figure(&file).save(&stem)?;
     Ok(stem)
