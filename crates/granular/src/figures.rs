@@ -3,6 +3,7 @@
 mod column;
 mod flow;
 mod fluid;
+pub(crate) mod impact;
 mod map;
 mod radial;
 pub(crate) mod spectrum;
@@ -92,6 +93,10 @@ pub fn draw(
                 };
                 fluid::profile(scene, &table_of(folder, profile)?, record(records, stage)?, &spec).figure()
             }
+            FigureSpec::Impact { table, stage, transient, .. } => {
+                let table = table_of(folder, table)?;
+                impact::panels(scene, &table, record(records, stage)?, *transient)?.figure()
+            }
             FigureSpec::Spectrum { table, column, stage, reference, .. } => {
                 let record = record(records, stage)?;
                 fluid::spectrum_chart(scene, &table_of(folder, table)?, (column, record), *reference)?
@@ -132,6 +137,7 @@ pub(crate) fn metrics(
     let residual = number_of(simulation, "energy_residual").filter(|residual| residual.is_finite());
     add("energy_residual", residual);
     fluid::peaks(scene, folder, records, &mut metrics);
+    impact::metrics(scene, folder, records, &mut metrics);
     Value::Object(metrics)
 }
 

@@ -10,6 +10,7 @@ mod command_coarse;
 mod command_disk;
 mod command_flow;
 mod command_interrupt;
+mod command_push;
 mod command_sample;
 mod command_snapshots;
 mod command_sweep;

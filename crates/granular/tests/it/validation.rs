@@ -32,6 +32,7 @@ mod regular_packings;
 mod restitution;
 mod rotating_frame;
 mod sliding_to_rolling;
+mod slope_impact;
 mod square_array;
 mod taylor_green;
 mod tessellation;
