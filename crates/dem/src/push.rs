@@ -54,7 +54,8 @@ pub struct Pushed {
 
 impl<D: Dim> Push<D> {
     fn check(&self) -> Result<(), SetupError> {
-        let refuse = |what: &str, value: f64, allowed: &'static str| Err(SetupError::new(what, value, allowed));
+        let refuse =
+            |what: &str, value: f64, allowed: &'static str| Err(SetupError::new(what, value, allowed));
         let length = self.direction.length();
         if !(length > 0.0 && length.is_finite()) {
             return refuse("length of the direction of a push", length, "above zero and finite");
@@ -77,17 +78,12 @@ impl<D: Dim> Dem<D> {
         self.blocks.sum(|i| self.grains.mass[i])
     }
 
-    /// Mean diameter of the grains \[m\]; not a number without grains.
-    pub fn mean_diameter(&self) -> f64 {
-        self.blocks.sum(|i| 2.0 * self.grains.radius[i]) / self.len() as f64
-    }
-
     /// Gives all grains a velocity beside the one they have; the ledger counts the energy. Where there are no grains nothing
     /// happens.
     ///
     /// # Errors
     /// When a value is out of range, or the grains are in a periodic cell.
-    pub fn push(&mut self, push: &Push<D>) -> Result<Pushed, SetupError> {
+    pub fn apply_push(&mut self, push: &Push<D>) -> Result<Pushed, SetupError> {
         push.check()?;
         if self.cell.is_some() {
             return Err(SetupError::new("number of periodic cells that are pushed", 1.0, "0"));

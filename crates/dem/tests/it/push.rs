@@ -26,12 +26,14 @@ fn along_x<D: Dim>(strength: Strength, profile: PushProfile) -> Push<D> {
 }
 
 fn energy_is_given<D: Dim>() {
-    for (speed, profile) in [(0.0, PushProfile::Uniform), (0.0, PushProfile::Gradient), (1.5, PushProfile::Gradient)] {
+    for (speed, profile) in
+        [(0.0, PushProfile::Uniform), (0.0, PushProfile::Gradient), (1.5, PushProfile::Gradient)]
+    {
         let mut dem = boxed::<D>(speed);
         dem.advance(DT, 50).unwrap();
         let (before, momentum) = (dem.energies(), dem.momentum());
         let (residual, asked) = (dem.energy_residual().unwrap(), 0.37);
-        let pushed = dem.push(&along_x::<D>(Strength::Energy(asked), profile)).unwrap();
+        let pushed = dem.apply_push(&along_x::<D>(Strength::Energy(asked), profile)).unwrap();
         let given = dem.energies().translational() - before.translational();
         let scale = asked + before.translational();
         assert!((given - asked).abs() < 1e-13 * scale, "{given} {asked}");
@@ -43,7 +45,8 @@ fn energy_is_given<D: Dim>() {
         assert!((dem.energy_residual().unwrap() - residual).abs() < 1e-12 * scale);
         dem.advance(DT, 400).unwrap();
         assert!(dem.losses().total() > 1e-3 * asked);
-        assert!((dem.energy_residual().unwrap() - residual).abs() < 1e-3 * asked);
+        let missing = dem.energy_residual().unwrap() - residual;
+        assert!(missing.abs() < 1e-3 * scale, "{missing} {scale} {:?}", dem.losses());
     }
 }
 
@@ -57,7 +60,7 @@ fn the_energy_asked_for_is_given_to_disks_and_spheres_at_rest_or_not() {
 fn a_speed_is_given_to_all_or_by_depth() {
     let velocities = |push: &Push<D2>| {
         let mut dem = boxed::<D2>(0.0);
-        let (mass, pushed) = (dem.mass(), dem.push(push).unwrap());
+        let (mass, pushed) = (dem.mass(), dem.apply_push(push).unwrap());
         let grains: Vec<Grain<D2>> = dem.grains().map(|(_, grain)| grain).collect();
         (grains, mass, pushed)
     };
@@ -78,7 +81,7 @@ fn a_speed_is_given_to_all_or_by_depth() {
 #[test]
 fn energy_per_grain_is_in_units_of_weight_times_diameter() {
     let mut dem = boxed::<D3>(0.0);
-    let pushed = dem.push(&along_x(Strength::EnergyPerGrain(7.0), PushProfile::Gradient)).unwrap();
+    let pushed = dem.apply_push(&along_x(Strength::EnergyPerGrain(7.0), PushProfile::Gradient)).unwrap();
     let count = dem.len() as f64;
     let diameter = dem.grains().map(|(_, grain)| 2.0 * grain.radius).sum::<f64>() / count;
     let volume: f64 = dem.grains().map(|(_, grain)| D3::ball_volume(grain.radius)).sum();
@@ -98,7 +101,7 @@ fn a_pushed_heap_has_the_same_bits_for_any_threads_and_after_a_restart() {
         pool.install(|| {
             let mut dem = boxed::<D2>(1.0);
             dem.advance(DT, 30).unwrap();
-            dem.push(&along_x(Strength::EnergyPerGrain(3.0), PushProfile::Gradient)).unwrap();
+            dem.apply_push(&along_x(Strength::EnergyPerGrain(3.0), PushProfile::Gradient)).unwrap();
             let section = state(&dem);
             dem.advance(DT, 70).unwrap();
             (section, state(&dem))
@@ -123,14 +126,18 @@ fn a_row_of_grains_is_lowest_and_no_grains_get_nothing() {
     let mut materials = Materials::new();
     let glass = materials.add(Material::default()).unwrap();
     let mut one = with(vec![Grain::at(DVec2::new(1.0, 2.0), 1e-3, glass)], materials.clone());
-    one.push(&along_x(Strength::Speed(3.0), PushProfile::Gradient)).unwrap();
+    one.apply_push(&along_x(Strength::Speed(3.0), PushProfile::Gradient)).unwrap();
     assert_eq!(one.grain(0).velocity, DVec2::new(3.0, 0.0));
     // Against motion: 3 m/s to -3 m/s takes no energy, a little more takes that.
-    let back = |energy| Push { direction: -DVec2::X, strength: Strength::Energy(energy), profile: PushProfile::Uniform };
+    let back = |energy| Push {
+        direction: -DVec2::X,
+        strength: Strength::Energy(energy),
+        profile: PushProfile::Uniform,
+    };
     let energy = 1e-6 * one.energies().translational();
-    one.push(&back(energy)).unwrap();
+    one.apply_push(&back(energy)).unwrap();
     assert!((one.grain(0).velocity.x + 3.0 * (1.0_f64 + 1e-6).sqrt()).abs() < 1e-12);
-    let pushed = with(Vec::new(), materials).push(&back(1.0)).unwrap();
+    let pushed = with(Vec::new(), materials).apply_push(&back(1.0)).unwrap();
     assert_eq!((pushed.energy, pushed.momentum), (0.0, 0.0));
 }
 
@@ -145,7 +152,7 @@ fn values_out_of_range_are_refused() {
         (Push { strength: Strength::Energy(-1.0), ..push }, "energy of a push"),
         (Push { strength: Strength::EnergyPerGrain(f64::NAN), ..push }, "energy of a push"),
     ] {
-        assert_eq!(dem.push(&wrong).unwrap_err().what, what);
+        assert_eq!(dem.apply_push(&wrong).unwrap_err().what, what);
     }
     assert_eq!(dem.momentum(), DVec3::ZERO);
 }

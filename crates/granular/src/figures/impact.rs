@@ -58,8 +58,7 @@ impl Impact {
             Some(rows.map(|(t, value)| [(t - record.start) / second, value / unit]).collect())
         };
         let unit = push.mass * push.gravity * push.diameter;
-        let [energy, along] =
-            [over_time("kinetic_energy", unit)?, over_time("kinetic_energy_x", unit)?];
+        let [energy, along] = [over_time("kinetic_energy", unit)?, over_time("kinetic_energy_x", unit)?];
         let fronts = over_time("front", push.diameter)?;
         let mut last: Vec<f64> = fronts.iter().rev().take(LAST_ROWS).map(|point| point[1]).collect();
         last.sort_unstable_by(f64::total_cmp);
@@ -266,13 +265,27 @@ mod tests {
     /// long with E_p = 50 J.
     fn impact(rows: impl Iterator<Item = [f64; 4]>) -> Impact {
         let columns = ["time", "front", "kinetic_energy", "kinetic_energy_x"];
-        let rows: Vec<Vec<f64>> = rows.map(|[t, front, along, across]| vec![t, front, along + across, along]).collect();
+        let rows: Vec<Vec<f64>> =
+            rows.map(|[t, front, along, across]| vec![t, front, along + across, along]).collect();
         let columns = columns.map(|name| (name.to_owned(), "1".to_owned())).to_vec();
         let push = PushRecord {
-            energy: 100.0, momentum: 20.0, speed: 2.0, diameter: 1.0, mass: 10.0, gravity: 1.0, potential: 50.0,
+            energy: 100.0,
+            momentum: 20.0,
+            speed: 2.0,
+            diameter: 1.0,
+            mass: 10.0,
+            gravity: 1.0,
+            potential: 50.0,
         };
         let record = StageRecord {
-            name: "impact".to_owned(), start: 5.0, end: None, dt: 0.1, ended: None, front: 10.0, height: 4.0, push: Some(push),
+            name: "impact".to_owned(),
+            start: 5.0,
+            end: None,
+            dt: 0.1,
+            ended: None,
+            front: 10.0,
+            height: 4.0,
+            push: Some(push),
         };
         Impact::of(&Table { columns, rows }, &record, 1.0).unwrap()
     }

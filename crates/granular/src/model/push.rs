@@ -137,14 +137,10 @@ pub(super) fn check_figures(scene: &Scene, problems: &mut Problems) {
 }
 
 /// Pushes the grains of a solver; returns what this and the pushes `before` at the same stage did.
-pub(super) fn apply<D: Dim>(
-    action: &PushAction,
-    dem: &mut Dem<D>,
-    before: Option<PushRecord>,
-) -> PushRecord {
+pub(super) fn apply<D: Dim>(action: &PushAction, dem: &mut Dem<D>, before: Option<PushRecord>) -> PushRecord {
     let direction = D::Vec::from_slice(&action.direction).expect("axes were counted at build");
     let push = Push { direction, strength: action.strength, profile: action.profile };
-    let pushed = dem.push(&push).expect("the values were checked at build");
+    let pushed = dem.apply_push(&push).expect("the values were checked at build");
     PushRecord::of(dem, pushed, before)
 }
 
@@ -165,7 +161,9 @@ impl PushAction {
     fn text(&self, (mass, scale): (f64, f64)) -> String {
         let of_energy = |energy: f64| {
             let [unit, speed] = [energy / (mass * scale), (2.0 * energy / mass).sqrt()];
-            format!("{energy:.4} J in all, {unit:.4} m g d per grain, root mean square velocity {speed:.4} m/s")
+            format!(
+                "{energy:.4} J in all, {unit:.4} m g d per grain, root mean square velocity {speed:.4} m/s"
+            )
         };
         let strength = match (self.strength, self.profile) {
             (Strength::Speed(speed), PushProfile::Uniform) => {

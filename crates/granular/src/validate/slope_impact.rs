@@ -128,7 +128,9 @@ fn required(rows: &mut Rows, plan: &Plan, piles: &[Pile], struck: &[Struck]) {
     };
     let energy = farthest(&|one| one.energy);
     let metric = name("kinetic energy gained over that asked for");
-    rows.add(Measure::absolute(Tier::Identity, metric, energy, 1.0, 1e-12).note("the farthest off of all pushes"));
+    rows.add(
+        Measure::absolute(Tier::Identity, metric, energy, 1.0, 1e-12).note("the farthest off of all pushes"),
+    );
     let momentum = farthest(&|one| one.momentum);
     let metric = name("momentum gained in a uniform push over mass times speed");
     rows.add(Measure::absolute(Tier::Identity, metric, momentum, 1.0, 1e-12));

@@ -32,7 +32,12 @@ fn with_scene(name: &str) -> Scratch {
 fn a_push_is_announced_given_and_measured() {
     let scratch = with_scene("push");
     let check = scratch.granular(&["check", "push.ron"]).expect(0);
-    for part in ["impact  ", "begins with a push along [1.0, 0.0]", "12.0000 m g d per grain", "nothing for the highest"] {
+    for part in [
+        "impact  ",
+        "begins with a push along [1.0, 0.0]",
+        "12.0000 m g d per grain",
+        "nothing for the highest",
+    ] {
         assert!(check.out.contains(part), "`{part}` is not in:\n{}", check.out);
     }
     let json = scratch.granular(&["check", "push.ron", "--json"]).expect(0).json();
@@ -55,7 +60,10 @@ fn a_push_is_announced_given_and_measured() {
     let at = column("time").iter().position(|time| *time >= start).unwrap();
     let run_out = number(&metrics["impact_runout"]);
     let first = number(&facts["stages"][1]["front"]);
-    assert!((column("front").last().unwrap() / first - 1.0 - run_out).abs() < 1e-12 && run_out > 0.3, "{run_out}");
+    assert!(
+        (column("front").last().unwrap() / first - 1.0 - run_out).abs() < 1e-12 && run_out > 0.3,
+        "{run_out}"
+    );
     // Rows come within a millisecond of the push, when a little is lost.
     let energy = number(&push["energy"]);
     let given = column("kinetic_energy")[at] / energy;
@@ -71,12 +79,15 @@ fn a_push_is_announced_given_and_measured() {
 #[test]
 fn a_run_that_is_interrupted_after_a_push_ends_in_the_same_bits() {
     let scratch = with_scene("push-interrupt");
-    let run = ["run", "push.ron", "-q", "--set", "snapshot_every=20 ms", "--set", "stages.0.end=For(\"10 ms\")"];
+    let run =
+        ["run", "push.ron", "-q", "--set", "snapshot_every=20 ms", "--set", "stages.0.end=For(\"10 ms\")"];
     scratch.granular(&[&run[..], &["--out", "whole", "--threads", "1"]].concat()).expect(0);
     let started = scratch.start(&[&run[..], &["--out", "again", "--threads", "3"]].concat());
     // One at the start of each stage, then on a timer: more than two are never kept, so the step tells.
     let pushed = || {
-        let step = |path: &std::path::PathBuf| path.file_stem()?.to_str()?.rsplit(['-', '_']).next()?.parse::<u64>().ok();
+        let step = |path: &std::path::PathBuf| {
+            path.file_stem()?.to_str()?.rsplit(['-', '_']).next()?.parse::<u64>().ok()
+        };
         snapshots(&scratch.path("again")).iter().filter_map(step).max().is_some_and(|step| step > 0)
     };
     while !pushed() {
@@ -96,12 +107,18 @@ fn pushes_that_make_no_sense_are_explained() {
     let scratch = with_scene("push-wrong");
     let push = "stages.1.changes.0";
     let cases: &[(&str, &[&str])] = &[
-        ("Push(profile: Gradient)", &["stages.1.changes.0` is 0 of them", "one of `speed`, `energy` and `energy_per_grain`"]),
+        (
+            "Push(profile: Gradient)",
+            &["stages.1.changes.0` is 0 of them", "one of `speed`, `energy` and `energy_per_grain`"],
+        ),
         ("Push(speed: 1, energy: 2)", &["is 2 of them"]),
         ("Push(energy: -1)", &["stages.1.changes.0.energy` is -1", "turn `direction` round"]),
         ("Push(energy_per_grain: -1)", &["stages.1.changes.0.energy_per_grain` is -1", "0 or more"]),
         ("Push(speed: \"1 m\")", &["`1 m` is a length, but a velocity"]),
-        ("Push(speed: 1, direction: [0, 0])", &["changes.0.direction` is [0.0, 0.0]", "2 numbers, one per axis, not all zero"]),
+        (
+            "Push(speed: 1, direction: [0, 0])",
+            &["changes.0.direction` is [0.0, 0.0]", "2 numbers, one per axis, not all zero"],
+        ),
         ("Push(speed: 1, direction: [1])", &["changes.0.direction` is [1.0]"]),
         ("Push(speed: 1, profile: Linear)", &["Linear", "Uniform", "Gradient"]),
     ];
@@ -114,9 +131,11 @@ fn pushes_that_make_no_sense_are_explained() {
         scratch.granular(&[&["check", "push.ron"], &set[..]].concat()).expect(2)
     };
     check(&["gravity=[0, 0]"]).says(&["energy_per_grain` is 12", "a stage with gravity"]);
-    check(&["figures.0.stage=spread"]).says(&["figures.0.stage` is `spread`, which pushes nothing", "a stage with a Push: impact"]);
+    check(&["figures.0.stage=spread"])
+        .says(&["figures.0.stage` is `spread`, which pushes nothing", "a stage with a Push: impact"]);
     check(&["figures.0.transient=-1"]).says(&["figures.0.transient` is -1"]);
-    check(&["outputs.0.write.probes=[\"front\"]"]).says(&["does not hold \"kinetic_energy\", \"kinetic_energy_x\""]);
+    check(&["outputs.0.write.probes=[\"front\"]"])
+        .says(&["does not hold \"kinetic_energy\", \"kinetic_energy_x\""]);
 }
 
 #[test]
@@ -125,11 +144,25 @@ fn a_saved_pile_is_pushed_by_the_other_scene_of_the_example() {
     for name in ["scene.ron", "from_pile.ron"] {
         fs::copy(workspace().join("examples/ch4_slope_impact").join(name), scratch.path(name)).unwrap();
     }
-    let short = ["--set", "sample.extent=Grains(60)", "--set", "stages.0.end=For(\"10 ms\")", "--set",
-        "stages.1.end=For(\"100 ms\")", "--set", "stages.2.end=For(\"20 ms\")"];
+    let short = [
+        "--set",
+        "sample.extent=Grains(60)",
+        "--set",
+        "stages.0.end=For(\"10 ms\")",
+        "--set",
+        "stages.1.end=For(\"100 ms\")",
+        "--set",
+        "stages.2.end=For(\"20 ms\")",
+    ];
     scratch.granular(&[&["run", "scene.ron", "--out", "pile", "-q"], &short[..]].concat()).expect(0);
-    let short = ["--set", "sample.path=\"pile/pile.csv\"", "--set", "stages.0.end=For(\"20 ms\")", "--set",
-        "stages.1.end=For(\"20 ms\")"];
+    let short = [
+        "--set",
+        "sample.path=\"pile/pile.csv\"",
+        "--set",
+        "stages.0.end=For(\"20 ms\")",
+        "--set",
+        "stages.1.end=For(\"20 ms\")",
+    ];
     scratch.granular(&[&["run", "from_pile.ron", "--out", "run", "-q"], &short[..]].concat()).expect(0);
     let given = facts(&scratch.path("run"))["metrics"]["impact_energy_per_grain"].as_f64().unwrap();
     assert!((given - 10.0).abs() < 1e-12, "{given}");

@@ -7,7 +7,8 @@ use crate::validate::row::{Measure, Rows, Tier};
 use granular_validation_data::SLOPE_IMPACT;
 
 /// Why numbers of small piles differ.
-const SMALL: &str = "the thesis has 13 000 disks, and does not state restitution, stiffness or resistance to rolling";
+const SMALL: &str =
+    "the thesis has 13 000 disks, and does not state restitution, stiffness or resistance to rolling";
 /// Energy over the potential energy at which the thesis sees another regime: 40 of 26.5 m g d for each grain.
 const CROSSOVER: f64 = 1.5;
 
@@ -94,7 +95,13 @@ impl Sweep<'_> {
         let note = "over the energy along x that is left then, above the crossover";
         let [tau, duration] = [power_law(&half_lives), power_law(&left)];
         self.claim("exponent of the half-life after the transient", tau.1, "half-life exponent", 0.03, note);
-        self.claim("exponent of the duration after the transient", duration.1, "duration exponent", 0.02, note);
+        self.claim(
+            "exponent of the duration after the transient",
+            duration.1,
+            "duration exponent",
+            0.02,
+            note,
+        );
         let ratios: Vec<f64> = left.iter().zip(&half_lives).map(|(t, tau)| t.1 / tau.1).collect();
         let (ratio, _) = mean_and_error(&ratios);
         self.claim("duration after the transient over half-life", ratio, "duration over half-life", 0.4, "");
@@ -109,7 +116,8 @@ impl Sweep<'_> {
         };
         let run_out = |one: &Struck| one.impact.length_ratio() - 1.0;
         let duration = |one: &Struck| one.impact.duration_over_fall();
-        let base = |friction: f64| move |blow: &Blow| blow.profile == "Gradient" && blow.base_friction == friction;
+        let base =
+            |friction: f64| move |blow: &Blow| blow.profile == "Gradient" && blow.base_friction == friction;
         let over_friction = [0.1, 0.2, 0.3, 0.4].map(|friction| mean(&base(friction), &run_out));
         let run_outs = over_friction[0] / over_friction[1];
         let durations = mean(&base(0.1), &duration) / mean(&base(0.2), &duration);
@@ -120,10 +128,28 @@ impl Sweep<'_> {
             "at the lowest energy; run-out for 0.1, 0.2, 0.3, 0.4: {}; the thesis has these from a continuum only",
             list.join(", ")
         );
-        self.claim("run-out at base friction 0.1 over that at 0.2", run_outs, "run-out over friction", 0.41, &note);
+        self.claim(
+            "run-out at base friction 0.1 over that at 0.2",
+            run_outs,
+            "run-out over friction",
+            0.41,
+            &note,
+        );
         let note = "at the lowest energy; the thesis has it from a continuum only";
-        self.claim("duration at base friction 0.1 over that at 0.2", durations, "duration over friction", 0.24, note);
-        self.claim("run-out of a gradient over that of a uniform push", profile, "gradient over uniform", 0.13, note);
+        self.claim(
+            "duration at base friction 0.1 over that at 0.2",
+            durations,
+            "duration over friction",
+            0.24,
+            note,
+        );
+        self.claim(
+            "run-out of a gradient over that of a uniform push",
+            profile,
+            "gradient over uniform",
+            0.13,
+            note,
+        );
     }
 }
 
