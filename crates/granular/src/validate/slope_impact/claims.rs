@@ -24,7 +24,8 @@ pub(super) fn add(rows: &mut Rows, plan: &Plan, slenderness: &[f64], struck: &[S
     sweep.lengths(slenderness);
     sweep.durations();
     sweep.decay();
-    sweep.friction_and_profile();
+    sweep.profile();
+    sweep.friction();
 }
 
 fn is_usual(blow: &Blow) -> bool {
@@ -107,50 +108,54 @@ impl Sweep<'_> {
         self.claim("duration after the transient over half-life", ratio, "duration over half-life", 0.4, "");
     }
 
-    fn friction_and_profile(&mut self) {
+    /// Mean of a number over pushes with the least energy.
+    fn mean_of_least(&self, keeps: impl Fn(&Blow) -> bool, of: impl Fn(&Struck) -> f64) -> Option<f64> {
         let least = self.plan.energies[0];
-        let mean = |keeps: &dyn Fn(&Blow) -> bool, of: &dyn Fn(&Struck) -> f64| {
-            let chosen = self.struck.iter().filter(|one| energy_of(&one.blow) == least && keeps(&one.blow));
-            let values: Vec<f64> = chosen.map(of).collect();
-            values.iter().sum::<f64>() / values.len() as f64
-        };
-        let run_out = |one: &Struck| one.impact.length_ratio() - 1.0;
-        let duration = |one: &Struck| one.impact.duration_over_fall();
-        let base =
-            |friction: f64| move |blow: &Blow| blow.profile == "Gradient" && blow.base_friction == friction;
-        let over_friction = [0.1, 0.2, 0.3, 0.4].map(|friction| mean(&base(friction), &run_out));
-        let run_outs = over_friction[0] / over_friction[1];
-        let durations = mean(&base(0.1), &duration) / mean(&base(0.2), &duration);
+        let chosen = self.struck.iter().filter(|one| energy_of(&one.blow) == least && keeps(&one.blow));
+        let values: Vec<f64> = chosen.map(of).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    fn profile(&mut self) {
+        let of = |keeps: &dyn Fn(&Blow) -> bool| self.mean_of_least(keeps, run_out);
         let uniform = |blow: &Blow| blow.profile == "Uniform";
-        let profile = mean(&is_usual, &run_out) / mean(&uniform, &run_out);
-        let list: Vec<String> = over_friction.iter().map(|value| format!("{value:.3}")).collect();
+        let (Some(gradient), Some(uniform)) = (of(&is_usual), of(&uniform)) else { return };
         let note = format!(
-            "at the lowest energy; run-out for 0.1, 0.2, 0.3, 0.4: {}; the thesis has these from a continuum only",
+            "at the lowest energy: {gradient:.3} over {uniform:.3}; the thesis has it from a continuum only"
+        );
+        let metric = "run-out of a gradient over that of a uniform push";
+        self.claim(metric, gradient / uniform, "gradient over uniform", 0.13, &note);
+    }
+
+    /// Base friction, which the quick form leaves at one value.
+    fn friction(&mut self) {
+        let of = |friction: f64, number: fn(&Struck) -> f64| {
+            let keeps = move |blow: &Blow| blow.profile == "Gradient" && blow.base_friction == friction;
+            self.mean_of_least(keeps, number)
+        };
+        let lengths: Option<Vec<f64>> =
+            [0.1, 0.2, 0.3, 0.4].iter().map(|&friction| of(friction, run_out)).collect();
+        let times = of(0.1, duration).zip(of(0.2, duration));
+        let (Some(lengths), Some((slippery, rough))) = (lengths, times) else { return };
+        let list: Vec<String> = lengths.iter().map(|value| format!("{value:.3}")).collect();
+        let note = format!(
+            "at the lowest energy; for 0.1, 0.2, 0.3, 0.4: {}; the thesis has these from a continuum only",
             list.join(", ")
         );
-        self.claim(
-            "run-out at base friction 0.1 over that at 0.2",
-            run_outs,
-            "run-out over friction",
-            0.41,
-            &note,
-        );
+        let metric = "run-out at base friction 0.1 over that at 0.2";
+        self.claim(metric, lengths[0] / lengths[1], "run-out over friction", 0.41, &note);
         let note = "at the lowest energy; the thesis has it from a continuum only";
-        self.claim(
-            "duration at base friction 0.1 over that at 0.2",
-            durations,
-            "duration over friction",
-            0.24,
-            note,
-        );
-        self.claim(
-            "run-out of a gradient over that of a uniform push",
-            profile,
-            "gradient over uniform",
-            0.13,
-            note,
-        );
+        let metric = "duration at base friction 0.1 over that at 0.2";
+        self.claim(metric, slippery / rough, "duration over friction", 0.24, note);
     }
+}
+
+fn run_out(one: &Struck) -> f64 {
+    one.impact.length_ratio() - 1.0
+}
+
+fn duration(one: &Struck) -> f64 {
+    one.impact.duration_over_fall()
 }
 
 /// Power laws below and above the crossover.
