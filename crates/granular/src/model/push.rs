@@ -116,7 +116,7 @@ pub(super) fn check_figures(scene: &Scene, problems: &mut Problems) {
     let known: Vec<&str> = pushing.map(|stage| stage.name.as_str()).collect();
     for (k, figure) in scene.figures.iter().enumerate() {
         let FigureSpec::Impact { stage, transient, .. } = figure else { continue };
-        if !(*transient >= 0.0) {
+        if *transient < 0.0 {
             problems.add(format!("figures.{k}.transient"), transient, "0 or more", "");
         }
         let exists = scene.stages.iter().any(|other| other.name == *stage);
