@@ -31,6 +31,8 @@ const SORT_FROM: usize = 512;
 /// 13 000 disks) for 2 % on one thread.
 const BLOCKS: usize = 64;
 const SMALLEST_BLOCK: usize = 128;
+/// Least reach of lists over the longest.
+const SHORTEST: f64 = 0.08;
 
 /// Discrete element method in dimension `D`.
 pub struct Dem<D: Dim> {
@@ -292,10 +294,9 @@ impl<D: Dim> Dem<D> {
         View { cell, ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt) }
     }
 
-    /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step. A stride near
-    /// the skin (a shot) widens the reach so that the list serves for another step.
+    /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step, zero when that is not known.
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
-        self.reach = self.skin.max(4.0 * stride);
+        self.reach = self.reach_for(stride);
         self.travel = 0.0;
         let (_, largest) = self.grains.radius_range();
         self.movers.note_distances(&self.grains.position, 2.0 * self.reach + largest);
@@ -303,7 +304,19 @@ impl<D: Dim> Dem<D> {
         self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
     }
 
-    /// Reach of the lists for grains of this mean diameter \[m\].
+    /// How far lists reach beyond contact \[m\] for grains that move at most `stride` \[m\] in a step.
+    ///
+    /// A long list is read in every step, a short one is built often: with the reach `r` the one costs `a r` and the
+    /// other `b stride / r`, least together at `r^2 = b/a stride`, where `b/a` was measured as ten
+    /// diameters. A stride near the skin (a shot) widens the reach so that the list serves for another step.
+    fn reach_for(&self, stride: f64) -> f64 {
+        let longest = self.skin;
+        let best = (10.0 * longest / self.options.skin * stride).sqrt();
+        let reach = if stride > 0.0 { best.clamp(SHORTEST * longest, longest) } else { longest };
+        reach.max(4.0 * stride)
+    }
+
+    /// Longest reach of the lists for grains of this mean diameter \[m\].
     pub(crate) fn use_skin_of(&mut self, diameter: f64) {
         self.skin = self.options.skin * diameter;
     }
@@ -347,7 +360,8 @@ impl<D: Dim> Dem<D> {
             return Err(self.not_finite());
         }
         self.travel += stride;
-        if 2.0 * self.travel + stride > self.reach {
+        // Much too long a list costs more than another one.
+        if 2.0 * self.travel + stride > self.reach || self.reach > 4.0 * self.reach_for(stride) {
             self.list(stride, None);
         }
         self.push(dt, stride);

@@ -1,5 +1,6 @@
 //! The pass over the contacts of a block: who meets within the step, and the load between them.
 
+use crate::batch::{Address, Batch};
 use crate::cell::Cell;
 use crate::contacts::{Contact, Partner};
 use crate::law::{ContactLaw, Load, Meeting};
@@ -74,17 +75,33 @@ impl<L> Copy for Laws<'_, L> {}
 impl<'a, L> Laws<'a, L> {
     #[inline(always)]
     pub(crate) fn between(self, a: u8, b: u8) -> &'a L {
-        &self.of(a)[b as usize]
+        &self.list[self.number(a, b)]
     }
 
-    /// The laws of a material with every other.
+    /// The place of a law in the list.
     #[inline(always)]
-    pub(crate) fn of(self, material: u8) -> &'a [L] {
-        &self.list[material as usize * self.materials..][..self.materials]
+    pub(crate) fn number(self, a: u8, b: u8) -> usize {
+        a as usize * self.materials + b as usize
     }
 }
 
-impl<D: Dim> View<'_, D> {
+impl<'a, D: Dim> View<'a, D> {
+    /// Of one length as far as the compiler knows: one check then serves for all.
+    #[inline(always)]
+    pub(crate) fn cut<L: ContactLaw<D>>(&self) -> View<'a, D> {
+        let n = self.position.len();
+        let mut view = *self;
+        view.velocity = &view.velocity[..n];
+        view.radius = &view.radius[..n];
+        view.mass = &view.mass[..n];
+        if L::TANGENTIAL {
+            view.start_velocity = &view.start_velocity[..n];
+            view.start_spin = &view.start_spin[..n];
+            view.spin = &view.spin[..n];
+        }
+        view
+    }
+
     #[inline(always)]
     pub(crate) fn material_of(&self, grain: usize) -> u8 {
         if self.material.is_empty() { self.first_material } else { self.material[grain] }
@@ -113,31 +130,39 @@ impl<D: Dim> View<'_, D> {
 }
 
 /// What a contact reads of a body, besides its place.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Body<D: Dim> {
     pub(crate) velocity: D::Vec,
     pub(crate) start_velocity: D::Vec,
-    spin: D::Spin,
-    start_spin: D::Spin,
-    radius: f64,
-    mass: f64,
+    pub(crate) spin: D::Spin,
+    pub(crate) start_spin: D::Spin,
+    pub(crate) radius: f64,
+    pub(crate) mass: f64,
 }
 
 /// Share of the step during which surfaces overlap, and the overlap averaged over the step,
-/// when the motion through the step is uniform. This is what makes entry and exit of second
-/// order: a force that jumps at contact counts for exactly the time it acts.
+/// when the motion through the step is uniform; zero when they do not meet. This is what makes entry
+/// and exit of second order: a force that jumps at contact counts for exactly the time it acts.
 #[inline(always)]
-pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> Option<(f64, f64)> {
+pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> (f64, f64) {
     let half = 0.5 * approach.abs() * dt;
-    if overlap >= half {
-        return Some((1.0, overlap));
-    }
     let reach = overlap + half;
-    if reach <= 0.0 {
-        return None;
+    let part = reach / (2.0 * half);
+    if overlap >= half {
+        (1.0, overlap)
+    } else if reach <= 0.0 {
+        (0.0, 0.0)
+    } else {
+        (part, 0.5 * part * reach)
     }
-    let presence = reach / (2.0 * half);
-    Some((presence, 0.5 * presence * reach))
+}
+
+/// How far the pairs of a block are noted.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cursor {
+    local: usize,
+    place: usize,
+    owed: usize,
 }
 
 /// One pass over the contacts of a block.
@@ -154,78 +179,114 @@ pub(crate) struct Kernel<'a, D: Dim, L: ContactLaw<D>, const LEDGER: bool> {
 impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
     #[inline(always)]
     pub(crate) fn pairs(&mut self, list: &mut BlockList<L::Memory>, outgoing: &mut [Owed<D>]) {
-        let view = self.view;
-        let mut owed = 0;
-        for local in 0..self.force.len() {
-            let first = self.start + local;
-            let (position, own) = (view.position[first], view.body::<L>(first));
-            let (mut force, mut torque) = (D::Vec::ZERO, D::Spin::ZERO);
-            let laws = self.laws.of(view.material_of(first));
-            let range = list.starts[local] as usize..list.starts[local + 1] as usize;
-            for (&partner, memory) in list.partners[range.clone()].iter().zip(&mut list.memory[range]) {
-                let second = partner as usize;
-                let abroad = second < self.start;
-                let arm = position - view.position[second];
-                let reach = own.radius + view.radius[second] + view.margin;
-                let squared = arm.length_squared();
-                let law = &laws[view.material_of(second) as usize];
-                let given = if squared < reach * reach {
-                    let pair = Pair {
-                        first,
-                        own: &own,
-                        other: &view.body::<L>(second),
-                        arm,
-                        distance: squared.sqrt(),
-                    };
-                    self.touch(law, &pair, memory, (&mut force, &mut torque))
-                } else {
-                    None
-                };
-                if given.is_none() && *memory != L::Memory::default() {
-                    law.release(memory, &mut self.tally);
-                    *memory = L::Memory::default();
-                }
-                if abroad {
-                    outgoing[owed] = given.unwrap_or_default();
-                    owed += 1;
-                } else if let Some(given) = given {
-                    let place = second - self.start;
-                    self.force[place] += given.force;
-                    if L::TANGENTIAL {
-                        self.torque[place] += given.torque;
-                    }
-                }
-            }
-            // Later grains of the block add to this one after it was set here.
-            self.force[local] = force;
-            if L::TANGENTIAL {
-                self.torque[local] = torque;
+        self.force.fill(D::Vec::ZERO);
+        self.torque.fill(D::Spin::ZERO);
+        outgoing.fill(Owed::default());
+        let mut batch = Batch::<D, L, LEDGER>::new();
+        let mut cursor = Cursor::default();
+        loop {
+            let done = self.note_near(list, &mut cursor, &mut batch);
+            batch.gather(self.view, &list.memory);
+            let deep = batch.load(self.view, self.laws.list);
+            self.hand_out(&batch, deep, list, outgoing);
+            batch.clear();
+            if done {
+                break;
             }
         }
     }
 
-    /// Adds the load of a pair, if it meets within the step, to force and torque of the first;
-    /// returns what the second one gets.
+    /// Notes near pairs from the cursor on, as many as a batch takes. Returns whether these were the last.
     #[inline(always)]
-    fn touch(
+    fn note_near(
         &mut self,
-        law: &L,
-        pair: &Pair<'_, D>,
-        memory: &mut L::Memory,
-        (force, torque): (&mut D::Vec, &mut D::Spin),
-    ) -> Option<Owed<D>> {
-        let (meeting, arms) = pair.meet::<L>(self.view)?;
-        let (radius, other) = (pair.own.radius, pair.other.radius);
-        self.guard(pair.first, radius + other - pair.distance, radius.min(other));
-        let load = law.load(&meeting, memory, &mut self.tally);
-        let on_first = push_of::<D, L>(&load, meeting.normal);
-        *force += on_first;
-        let mut given = Owed { force: -on_first, torque: D::Spin::ZERO };
-        if L::TANGENTIAL {
-            *torque += load.rolling - load.tangential * arms.0;
-            given.torque = -load.rolling - load.tangential * arms.1;
+        list: &mut BlockList<L::Memory>,
+        cursor: &mut Cursor,
+        batch: &mut Batch<D, L, LEDGER>,
+    ) -> bool {
+        let view = self.view;
+        while let Some(&end) = list.starts.get(cursor.local + 1) {
+            let first = self.start + cursor.local;
+            let (position, radius) = (view.position[first], view.radius[first] + view.margin);
+            let material = view.material_of(first);
+            for place in cursor.place..end as usize {
+                let second = list.partners[place] as usize;
+                let arm = position - view.position[second];
+                let reach = radius + view.radius[second];
+                let distance_squared = arm.length_squared();
+                if distance_squared < reach * reach {
+                    let law = self.laws.number(material, view.material_of(second));
+                    let Some(in_batch) = batch.place(law) else {
+                        cursor.place = place;
+                        return false;
+                    };
+                    let address = Address {
+                        first: first as u32,
+                        second: second as u32,
+                        memory: place as u32,
+                        owed: cursor.owed as u32,
+                        place: in_batch as u32,
+                    };
+                    batch.note(address, (arm, distance_squared));
+                } else if list.touching[place] {
+                    let law = self.laws.between(material, view.material_of(second));
+                    list.touching[place] = false;
+                    law.release(&list.memory[place], &mut self.tally);
+                    list.memory[place] = L::Memory::default();
+                }
+                cursor.owed += usize::from(second < self.start);
+            }
+            cursor.place = end as usize;
+            cursor.local += 1;
         }
-        Some(given)
+        true
+    }
+
+    /// Adds the loads of a batch to both grains.
+    #[inline(always)]
+    fn hand_out(
+        &mut self,
+        batch: &Batch<D, L, LEDGER>,
+        deep: bool,
+        list: &mut BlockList<L::Memory>,
+        outgoing: &mut [Owed<D>],
+    ) {
+        for to in batch.addresses() {
+            let k = to.place as usize;
+            let (first, second) = (to.first as usize, to.second as usize);
+            let kept = &mut list.memory[to.memory as usize];
+            let touching = &mut list.touching[to.memory as usize];
+            // What is not a number goes on to the grains, where it is found.
+            if batch.presence[k] == 0.0 {
+                if *touching {
+                    *touching = false;
+                    let materials = [first, second].map(|grain| self.view.material_of(grain));
+                    self.laws.between(materials[0], materials[1]).release(kept, &mut self.tally);
+                    *kept = L::Memory::default();
+                }
+                continue;
+            }
+            *touching = true;
+            *kept = batch.memories[k];
+            if deep {
+                let pair = batch.pair(k);
+                self.guard(first, pair.overlap(), pair.own.radius.min(pair.other.radius));
+            }
+            self.tally.add(|| batch.losses(k));
+            let first = first - self.start;
+            self.force[first] += batch.force[k];
+            if L::TANGENTIAL {
+                self.torque[first] += batch.torques[0][k];
+            }
+            if let Some(second) = second.checked_sub(self.start) {
+                self.force[second] -= batch.force[k];
+                if L::TANGENTIAL {
+                    self.torque[second] += batch.torques[1][k];
+                }
+            } else {
+                outgoing[to.owed as usize] = Owed { force: -batch.force[k], torque: batch.torques[1][k] };
+            }
+        }
     }
 
     /// Loads of walls; with `MOVING`, of walls that may move.
@@ -304,10 +365,10 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
     (other, other_arm): (&Body<D>, f64),
     (normal, turning): (D::Vec, impl FnOnce() -> D::Vec),
     overlap: f64,
-) -> Option<Meeting<D>> {
+) -> Meeting<D> {
     let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
-    let (presence, overlap) = share_of_step(overlap, approach, view.dt)?;
+    let (presence, overlap) = share_of_step(overlap, approach, view.dt);
     let mut meeting = Meeting {
         normal,
         overlap,
@@ -345,32 +406,38 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
             meeting.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
         }
     }
-    Some(meeting)
+    meeting
 }
 
 /// Two grains at a distance: `arm` leads from the second to the first.
-pub(crate) struct Pair<'a, D: Dim> {
-    pub(crate) first: usize,
-    pub(crate) own: &'a Body<D>,
-    pub(crate) other: &'a Body<D>,
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Pair<D: Dim> {
+    pub(crate) own: Body<D>,
+    pub(crate) other: Body<D>,
     pub(crate) arm: D::Vec,
-    pub(crate) distance: f64,
+    pub(crate) distance_squared: f64,
 }
 
-impl<D: Dim> Pair<'_, D> {
-    /// The meeting, if there is one within the step, and both lever arms.
+impl<D: Dim> Pair<D> {
     #[inline(always)]
-    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> Option<(Meeting<D>, (f64, f64))> {
-        let Self { own, other, .. } = *self;
-        let overlap = own.radius + other.radius - self.distance;
+    pub(crate) fn overlap(&self) -> f64 {
+        self.own.radius + self.other.radius - self.distance_squared.sqrt()
+    }
+
+    /// The meeting and both lever arms.
+    #[inline(always)]
+    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> (Meeting<D>, (f64, f64)) {
+        let Self { own, other, .. } = self;
+        let distance = self.distance_squared.sqrt();
+        let overlap = own.radius + other.radius - distance;
         let shorter = view.arm_share * overlap;
         let arms = (own.radius - shorter, other.radius - shorter);
-        let normal = self.arm * (1.0 / self.distance);
-        let turning = || (own.start_velocity - other.start_velocity) * (1.0 / self.distance);
-        let mut meeting = meeting::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap)?;
+        let normal = self.arm * (1.0 / distance);
+        let turning = || (own.start_velocity - other.start_velocity) * (1.0 / distance);
+        let mut meeting = meeting::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap);
         meeting.effective_mass = own.mass * other.mass / (own.mass + other.mass);
         meeting.effective_radius = own.radius * other.radius / (own.radius + other.radius);
-        Some((meeting, arms))
+        (meeting, arms)
     }
 }
 
@@ -435,10 +502,10 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
         }
         None => D::turn(other.start_spin, normal),
     };
-    let mut meeting = meeting::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap)?;
+    let mut meeting = meeting::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap);
     meeting.effective_mass = view.mass[first];
     meeting.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
-    Some((meeting, arm))
+    (meeting.presence != 0.0).then_some((meeting, arm))
 }
 
 /// The meeting of two grains that overlap now.
@@ -448,15 +515,9 @@ pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     second: usize,
 ) -> Option<Meeting<D>> {
     let arm = view.position[first] - view.position[second];
-    let distance = arm.length();
-    let overlap = view.radius[first] + view.radius[second] - distance;
-    let met = if overlap > 0.0 && distance > 0.0 {
-        let (own, other) = (&view.body::<L>(first), &view.body::<L>(second));
-        Pair { first, own, other, arm, distance }.meet::<L>(view)
-    } else {
-        None
-    };
-    met.map(|(meeting, _)| meeting)
+    let (own, other) = (view.body::<L>(first), view.body::<L>(second));
+    let pair = Pair { own, other, arm, distance_squared: arm.length_squared() };
+    (pair.overlap() > 0.0 && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
 }
 
 /// A contact as outputs see it.

@@ -69,9 +69,12 @@ impl<const LEDGER: bool> Tally<LEDGER> {
     #[inline(always)]
     pub fn sliding(&mut self, energy: impl FnOnce() -> f64) {
         if LEDGER {
-            let place =
-                if self.at_wall { &mut self.losses.sliding_at_walls } else { &mut self.losses.sliding };
-            *place += energy();
+            let energy = energy();
+            if self.at_wall {
+                self.losses.sliding_at_walls += energy;
+            } else {
+                self.losses.sliding += energy;
+            }
         }
     }
 
@@ -79,6 +82,14 @@ impl<const LEDGER: bool> Tally<LEDGER> {
     #[inline(always)]
     pub(crate) fn at_walls(&mut self) {
         self.at_wall = true;
+    }
+
+    /// Adds the losses of one contact.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, losses: impl FnOnce() -> Losses) {
+        if LEDGER {
+            self.losses += losses();
+        }
     }
 
     pub(crate) fn losses(&self) -> Losses {

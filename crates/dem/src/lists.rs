@@ -26,6 +26,8 @@ pub(crate) struct BlockList<M> {
     /// Earlier grains near each grain, in rising order.
     pub(crate) partners: Vec<u32>,
     pub(crate) memory: Vec<M>,
+    /// Whether each pair touched in the last step, so that its memory is not fresh.
+    pub(crate) touching: Vec<bool>,
     pub(crate) near_walls: Vec<NearWall>,
     pub(crate) wall_memory: Vec<M>,
     /// Memories that are not fresh, between two builds: pairs of grains, then walls.
@@ -39,6 +41,7 @@ impl<M> Default for BlockList<M> {
             starts: Vec::new(),
             partners: Vec::new(),
             memory: Vec::new(),
+            touching: Vec::new(),
             near_walls: Vec::new(),
             wall_memory: Vec::new(),
             live: Vec::new(),
@@ -114,6 +117,7 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     pub(crate) fn spare(&mut self) {
         spare(&mut self.partners, 0);
         spare(&mut self.memory, 0);
+        spare(&mut self.touching, 0);
         spare(&mut self.near_walls, 0);
         spare(&mut self.wall_memory, 0);
         self.live
@@ -129,12 +133,15 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
     fn sow(&mut self, start: usize) {
         self.memory.clear();
         self.memory.resize(self.partners.len(), M::default());
+        self.touching.clear();
+        self.touching.resize(self.partners.len(), false);
         for &(first, second, memory) in &self.live {
             let local = first as usize - start;
             let from = self.starts[local] as usize;
             let partners = &self.partners[from..self.starts[local + 1] as usize];
             if let Ok(place) = partners.binary_search(&second) {
                 self.memory[from + place] = memory;
+                self.touching[from + place] = true;
             }
         }
         self.live.clear();
@@ -162,6 +169,7 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
         4 * (self.starts.capacity() + self.partners.capacity())
             // One by one: without memory a capacity is the largest number there is.
             + size_of::<M>() * self.memory.capacity()
+            + self.touching.capacity()
             + size_of::<M>() * self.wall_memory.capacity()
             + size_of::<NearWall>() * self.near_walls.capacity()
     }

@@ -40,7 +40,8 @@ pub struct Options {
     pub ledger: bool,
     /// Steps in the shortest contact time, for the recommended step.
     pub steps_per_contact: f64,
-    /// Reach of the neighbour lists over the mean diameter.
+    /// Longest reach of the neighbour lists over the mean diameter. Lists of slow grains are shorter. It changes the
+    /// speed, never the forces.
     pub skin: f64,
 }
 

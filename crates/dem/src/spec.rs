@@ -22,8 +22,8 @@ pub struct DemSpec {
     pub lever_arm: LeverArmSpec,
     /// Steps in the shortest contact time, 1 or more; this sets the step where `time_step` does not.
     pub steps_per_contact: f64,
-    /// How far beyond contact neighbour lists reach, over the mean diameter. It changes the speed,
-    /// never the forces.
+    /// How far beyond contact neighbour lists reach at most, over the mean diameter; those of slow grains are
+    /// shorter. It changes the speed, never the forces.
     pub skin: f64,
     /// The step; by default it follows from `steps_per_contact`.
     pub time_step: Option<Time>,

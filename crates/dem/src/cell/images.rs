@@ -340,7 +340,6 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     if squared >= reach * reach {
         return None;
     }
-    let distance = squared.sqrt();
     let (mut rate, mut start_rate) = (D::Vec::ZERO, D::Vec::ZERO);
     for axis in 0..D::N {
         rate += cell.edge_rate.columns[axis] * f64::from(pair.shift[axis]);
@@ -349,7 +348,7 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     let mut other = view.body::<L>(second);
     other.velocity += rate;
     other.start_velocity += start_rate;
-    let (meeting, arms) =
-        Pair { first, own: &view.body::<L>(first), other: &other, arm, distance }.meet::<L>(view)?;
-    Some((meeting, arms, sum - distance))
+    let pair = Pair { own: view.body::<L>(first), other, arm, distance_squared: squared };
+    let (meeting, arms) = pair.meet::<L>(view);
+    (meeting.presence != 0.0).then(|| (meeting, arms, pair.overlap()))
 }
