@@ -51,7 +51,8 @@ impl Impact {
         let push = record.push.filter(|push| push.mass > 0.0 && push.gravity > 0.0)?;
         let second = (push.diameter / push.gravity).sqrt();
         let time = table.column("time")?;
-        let first = time.iter().position(|&time| time >= record.start - 1e-6 * second)?;
+        // A row at the time of the push itself may be of the state before it.
+        let first = time.iter().position(|&time| time > record.start + 1e-6 * second)?;
         let over_time = |name: &str, unit: f64| -> Option<Curve> {
             let values = table.column(name)?;
             let rows = time.iter().zip(&values).skip(first);

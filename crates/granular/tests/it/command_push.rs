@@ -83,12 +83,15 @@ fn a_run_that_is_interrupted_after_a_push_ends_in_the_same_bits() {
         ["run", "push.ron", "-q", "--set", "snapshot_every=20 ms", "--set", "stages.0.end=For(\"10 ms\")"];
     scratch.granular(&[&run[..], &["--out", "whole", "--threads", "1"]].concat()).expect(0);
     let started = scratch.start(&[&run[..], &["--out", "again", "--threads", "3"]].concat());
-    // One at the start of each stage, then on a timer: more than two are never kept, so the step tells.
+    let stages = &facts(&scratch.path("whole"))["stages"];
+    let at = |key: &str, stage: usize| stages[stage][key].as_f64().unwrap();
+    let first = (at("start", 1) / at("dt", 0)).round() as u64;
+    // One at the start of each stage, then on a timer.
     let pushed = || {
         let step = |path: &std::path::PathBuf| {
             path.file_stem()?.to_str()?.rsplit(['-', '_']).next()?.parse::<u64>().ok()
         };
-        snapshots(&scratch.path("again")).iter().filter_map(step).max().is_some_and(|step| step > 0)
+        snapshots(&scratch.path("again")).iter().filter_map(step).max().is_some_and(|step| step >= first)
     };
     while !pushed() {
         std::thread::sleep(std::time::Duration::from_millis(1));
