@@ -32,7 +32,7 @@ fn energy_is_given<D: Dim>() {
         let mut dem = boxed::<D>(speed);
         dem.advance(DT, 50).unwrap();
         let (before, momentum) = (dem.energies(), dem.momentum());
-        let (residual, asked) = (dem.energy_residual().unwrap(), 0.37);
+        let (residual, asked) = (dem.energy_residual().unwrap(), 0.11 * dem.mass());
         let pushed = dem.apply_push(&along_x::<D>(Strength::Energy(asked), profile)).unwrap();
         let given = dem.energies().translational() - before.translational();
         let scale = asked + before.translational();

@@ -53,7 +53,7 @@ impl Plan {
                 grains: 100,
                 seeds: vec![1],
                 stiffness: 2e5,
-                within: 1.2,
+                within: 1.8,
                 energies: vec![0.2, 0.5, 1.0, 3.0, 6.0],
             },
             Effort::Full => Self {
