@@ -25,12 +25,12 @@ fn along_x<D: Dim>(strength: Strength, profile: PushProfile) -> Push<D> {
     Push { direction: D::Vec::from_slice(&axis[..D::N]).unwrap(), strength, profile }
 }
 
-fn energy_is_given<D: Dim>() {
+fn energy_is_given<D: Dim>(dt: f64) {
     for (speed, profile) in
         [(0.0, PushProfile::Uniform), (0.0, PushProfile::Gradient), (1.5, PushProfile::Gradient)]
     {
         let mut dem = boxed::<D>(speed);
-        dem.advance(DT, 50).unwrap();
+        dem.advance(dt, 50).unwrap();
         let (before, momentum) = (dem.energies(), dem.momentum());
         let (residual, asked) = (dem.energy_residual().unwrap(), 0.11 * dem.mass());
         let pushed = dem.apply_push(&along_x::<D>(Strength::Energy(asked), profile)).unwrap();
@@ -43,7 +43,7 @@ fn energy_is_given<D: Dim>() {
         assert!((1..D::N).all(|axis| gained.component(axis).abs() < 1e-12 * pushed.momentum));
         // The ledger counts it, at once and while it is lost.
         assert!((dem.energy_residual().unwrap() - residual).abs() < 1e-12 * scale);
-        dem.advance(DT, 400).unwrap();
+        dem.advance(dt, 400).unwrap();
         assert!(dem.losses().total() > 1e-3 * asked);
         let missing = dem.energy_residual().unwrap() - residual;
         assert!(missing.abs() < 1e-3 * scale, "{missing} {scale} {:?}", dem.losses());
@@ -52,8 +52,9 @@ fn energy_is_given<D: Dim>() {
 
 #[test]
 fn the_energy_asked_for_is_given_to_disks_and_spheres_at_rest_or_not() {
-    energy_is_given::<D2>();
-    energy_is_given::<D3>();
+    energy_is_given::<D2>(DT);
+    // Spheres are a thousandth as heavy as disks.
+    energy_is_given::<D3>(DT / 20.0);
 }
 
 #[test]

@@ -16,7 +16,7 @@ const SCENE: &str = r#"Scene(
             Push(energy_per_grain: 12, profile: Gradient),
         ]),
     ],
-    solvers: { "grains": Dem(()) },
+    solvers: { "grains": Dem((steps_per_contact: 150)) },
     outputs: [(every: Time("1 ms"), write: Table(path: "series.csv", probes: ["front", "kinetic_energy", "kinetic_energy_x",
         "energy_residual"]))],
     figures: [Impact(path: "impact", table: "series.csv", stage: "impact")],
