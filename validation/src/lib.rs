@@ -45,3 +45,5 @@ pub const CHUNG_OOI: &str = include_str!("../chung_ooi/reference.csv");
 pub const PACKING_DENSITY: &str = include_str!("../packing_density/reference.csv");
 /// Numbers of weighted Voronoi diagrams with closed forms.
 pub const TESSELLATION: &str = include_str!("../tessellation/reference.csv");
+/// What the thesis says of piles that are pushed.
+pub const SLOPE_IMPACT: &str = include_str!("../slope_impact/reference.csv");

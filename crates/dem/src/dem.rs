@@ -268,7 +268,7 @@ impl<D: Dim> Dem<D> {
     }
 
     /// Changes something between steps, and books the energy that this puts in.
-    fn change(&mut self, change: impl FnOnce(&mut Self)) {
+    pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let before = self.options.ledger.then(|| self.energies().mechanical());
         change(self);
         self.list(0.0, None);

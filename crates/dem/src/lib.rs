@@ -52,6 +52,7 @@ pub mod material;
 mod motion;
 mod moving;
 mod pose;
+mod push;
 mod servo;
 mod setup;
 mod shaking;
@@ -78,6 +79,7 @@ pub use material::{
     Tension,
 };
 pub use moving::WallMotion;
+pub use push::{Push, PushProfile, Pushed, Strength};
 pub use servo::Servo;
 pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use shaking::Shaking;

@@ -1,9 +1,9 @@
 //! What is known before the first step: limits, memory, time, and what was left out.
 
 use crate::failure::Failure;
-use crate::model::{self, Model};
+use crate::model::{self, Action, Model};
 use crate::progress::duration;
-use crate::scene::{Scene, SolverSpec};
+use crate::scene::{Scene, SolverSpec, Stage};
 use crate::scene_file::{SceneProblem, SceneText};
 use crate::voronoi;
 use granular_core::{Limits, Memory, StepRule};
@@ -27,6 +27,8 @@ pub struct Report {
     pub limits: Limits,
     /// Steps of the stages \[s\], with their names and longest durations \[s\].
     pub stages: Vec<(String, f64, f64)>,
+    /// Names of stages that push the grains, and what each push does.
+    pub pushes: Vec<(String, String)>,
     /// Memory.
     pub memory: Memory,
     /// Longest run time with the present number of threads \[s\], from a measured burst of steps.
@@ -111,6 +113,7 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
         .map(|(stage, &dt)| (stage.name.clone(), dt, stage.end.longest()))
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
+    let pushes = pushes(&scene, &model);
     let estimated_seconds =
         if problems.is_empty() { count * seconds_per_step(&mut model, steps[0]) } else { f64::NAN };
     Ok(Report {
@@ -119,10 +122,21 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
         solver: model.simulation.solver().name(),
         limits,
         stages,
+        pushes,
         memory,
         estimated_seconds,
         problems,
     })
+}
+
+/// What pushes will do, by stage.
+fn pushes(scene: &Scene, model: &Model) -> Vec<(String, String)> {
+    let solver = model.simulation.solver();
+    let of_stage = |(stage, actions): (&Stage, &Vec<Action>)| {
+        let texts = actions.iter().filter_map(|action| model::push::described(action, solver));
+        texts.map(|text| (stage.name.clone(), text)).collect::<Vec<_>>()
+    };
+    scene.stages.iter().zip(&model.stages).flat_map(of_stage).collect()
 }
 
 /// Wall time of one step, measured.
@@ -161,6 +175,7 @@ impl Report {
             json!({ "name": limit.name, "value": chosen, "bound": limit.dt, "unit": "s",
                 "binds": (chosen - limit.dt).abs() <= 1e-12 * limit.dt, "why": limit.why })
         });
+        let pushes = self.pushes.iter().map(|(stage, text)| json!({ "stage": stage, "push": text }));
         let bounds = self.limits.bounds.iter().map(|bound| {
             json!({ "name": bound.name, "value": bound.value, "bound": bound.allowed, "unit": bound.unit,
                 "binds": !bound.holds(), "why": bound.why })
@@ -170,6 +185,7 @@ impl Report {
             "solver": self.solver,
             "size": self.size.0,
             "limits": steps.chain(bounds).collect::<Vec<_>>(),
+            "pushes": pushes.collect::<Vec<_>>(),
             "memory_bytes": self.memory.bytes,
             "bytes_per_item": self.memory.bytes_per_item,
             "estimated_seconds": self.estimated_seconds,
@@ -190,6 +206,9 @@ impl fmt::Display for Report {
                 "  {name:<24} at most {longest} s in steps of {dt:.4e} s: {:.0} steps",
                 (longest / dt).ceil()
             )?;
+            for (_, push) in self.pushes.iter().filter(|(stage, _)| stage == name) {
+                writeln!(f, "    begins with {push}")?;
+            }
         }
         writeln!(f, "\nlimits on the step")?;
         let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);

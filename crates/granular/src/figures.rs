@@ -3,6 +3,7 @@
 mod column;
 mod flow;
 mod fluid;
+pub(crate) mod impact;
 mod map;
 mod radial;
 pub(crate) mod spectrum;
@@ -96,6 +97,10 @@ pub fn draw(
                 };
                 fluid::profile(scene, &table_of(folder, profile)?, record(records, stage)?, &spec).figure()
             }
+            FigureSpec::Impact { table, stage, transient, .. } => {
+                let table = table_of(folder, table)?;
+                impact::panels(scene, &table, record(records, stage)?, *transient)?.figure()
+            }
             FigureSpec::Spectrum { table, column, stage, reference, .. } => {
                 let record = record(records, stage)?;
                 fluid::spectrum_chart(scene, &table_of(folder, table)?, (column, record), *reference)?
@@ -143,6 +148,7 @@ pub(crate) fn metrics(
         add("duration_unit", "s", gravity_time(scene, release.height));
     }
     metrics.extend(fluid::peaks(scene, folder, records));
+    metrics.extend(impact::metrics(scene, folder, records));
     metrics
 }
 

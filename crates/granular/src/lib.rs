@@ -30,4 +30,5 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("cylinder", include_str!("../templates/cylinder.ron")),
     ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
     ("sample", include_str!("../templates/sample.ron")),
+    ("slope-impact", include_str!("../templates/slope-impact.ron")),
 ];

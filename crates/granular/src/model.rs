@@ -5,12 +5,14 @@ mod cell;
 mod fluid;
 mod grains;
 mod outputs;
+pub(crate) mod push;
 mod region;
 mod sample;
 mod walls;
 
 pub(crate) use grains::NamedMaterials;
 pub use outputs::{all_shown, shown_on_grids};
+pub use push::{PushAction, PushRecord};
 
 use crate::failure::Failure;
 use crate::scene::{Dimension, End, Scene, SolverSpec};
@@ -74,6 +76,8 @@ pub enum Action {
     Gravity(Vec<f64>),
     /// All velocities become zero.
     StopMotion,
+    /// All grains get a velocity.
+    Push(PushAction),
     /// A shaking begins, or ends.
     Shake(Option<Shake>),
     /// A wall opens or closes.
@@ -156,8 +160,18 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
 
 /// Makes a change. The solver is the one that [`build`] made.
 pub fn apply(action: &Action, solver: &mut dyn Solver) {
-    grains::apply(action, solver);
+    grains::apply(action, solver, &mut None);
     fluid::apply(action, solver);
+}
+
+/// Makes all changes at the start of a stage; returns what its pushes did, if there are any.
+pub fn begin(actions: &[Action], solver: &mut dyn Solver) -> Option<PushRecord> {
+    let mut pushed = None;
+    for action in actions {
+        grains::apply(action, solver, &mut pushed);
+        fluid::apply(action, solver);
+    }
+    pushed
 }
 
 /// Saves the grains as they are now, as a sample for other scenes.

@@ -3,7 +3,7 @@
 use crate::check;
 use crate::failure::Failure;
 use crate::folder::{RunFolder, provenance};
-use crate::model::{self, Model};
+use crate::model::{self, Model, PushRecord};
 use crate::observers::{self, END_OF_STAGE, Packed, Rest, SnapshotTimer, Steady};
 use crate::progress;
 use crate::scene::{End, Scene};
@@ -48,6 +48,9 @@ pub struct StageRecord {
     /// Height of the main mass of grains at its start \[m\]; not a number without grains.
     #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub height: f64,
+    /// What pushes at its start did; absent without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub push: Option<PushRecord>,
 }
 
 fn unknown() -> f64 {
@@ -280,9 +283,7 @@ impl<'a> Session<'a> {
     }
 
     fn begin_stage(&mut self, index: usize) -> Result<(), Failure> {
-        for action in &self.model.stages[index] {
-            model::apply(action, self.model.simulation.solver_mut());
-        }
+        let push = model::begin(&self.model.stages[index], self.model.simulation.solver_mut());
         self.model.simulation.begin_segment(self.steps[index])?;
         let number = |name| observers::number_of(&self.model.simulation, name).unwrap_or(f64::NAN);
         self.records.push(StageRecord {
@@ -293,6 +294,7 @@ impl<'a> Session<'a> {
             ended: None,
             front: number("front"),
             height: number("height"),
+            push,
         });
         self.save(index)
     }

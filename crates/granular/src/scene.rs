@@ -8,6 +8,7 @@ pub(crate) mod files;
 pub mod fluid;
 pub(crate) mod names;
 pub mod outputs;
+pub mod push;
 pub mod region;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
@@ -15,9 +16,10 @@ pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurv
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
-use granular_core::units::{Acceleration, Frequency, Length, Time};
+use granular_core::units::{Acceleration, Energy, Frequency, Length, Time, Velocity};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
 use granular_lbm::spec::LbmSpec;
+use push::PushProfileSpec;
 use region::RegionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -490,6 +492,25 @@ pub enum Change {
     Gravity(Vec<Acceleration>),
     /// All velocities and spins become zero.
     StopMotion,
+    /// All grains get a velocity beside the one they have, at once, as from a blow or a quake. One of `speed`, `energy` and
+    /// `energy_per_grain` says how strong it is. Energies and momentum given are in `run.json`, under its stage.
+    Push {
+        /// Where to, one number per axis, of any length; along x by default.
+        #[serde(default)]
+        direction: Vec<f64>,
+        /// Velocity of the grains that it moves fastest.
+        #[serde(default)]
+        speed: Option<Velocity>,
+        /// Kinetic energy that all grains get together; per metre of depth in the plane.
+        #[serde(default)]
+        energy: Option<Energy>,
+        /// The same for each grain, in units of mean mass times gravity times mean diameter, `m g d`.
+        #[serde(default)]
+        energy_per_grain: Option<f64>,
+        /// How it is spread over the height of the grains.
+        #[serde(default)]
+        profile: PushProfileSpec,
+    },
     /// Shaking, during this stage only: an acceleration beside gravity that oscillates, as on a table that is shaken
     /// and seen from it.
     Shake {

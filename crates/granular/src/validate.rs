@@ -37,6 +37,7 @@ pub(crate) mod restitution;
 mod rolling;
 mod row;
 mod shear;
+mod slope_impact;
 pub mod stability;
 mod stages;
 pub(crate) mod strike;
@@ -135,6 +136,11 @@ pub const CASES: &[Case] = &[
     Case { name: "carried_disk", about: "a disk carried by a stream", run: fluid::bodies::carried_disk },
     Case { name: "fluid_mass", about: "mass of a fluid between walls", run: fluid::balance::mass },
     Case { name: "hydrostatic", about: "a fluid at rest under gravity", run: fluid::balance::hydrostatic },
+    Case {
+        name: "slope_impact",
+        about: "a pile is pushed: energy, momentum, run-out, decay",
+        run: slope_impact::run,
+    },
     Case { name: "column_runout", about: "run-out of a column of aspect ratio 0.8", run: claims::run_out },
     Case {
         name: "column_studies",

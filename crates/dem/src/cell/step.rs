@@ -93,7 +93,8 @@ impl<D: Dim> Dem<D> {
         std::f64::consts::TAU * (mass / stiffness).sqrt()
     }
 
-    fn mean_diameter(&self) -> f64 {
+    /// Mean diameter of the grains \[m\]; zero without grains.
+    pub fn mean_diameter(&self) -> f64 {
         2.0 * self.grains.radius.iter().sum::<f64>() / self.len().max(1) as f64
     }
 

@@ -18,6 +18,7 @@ mod memory;
 mod moving_walls;
 mod oblique;
 mod pairs;
+mod push;
 mod restart;
 mod sample;
 mod shaking;

@@ -26,9 +26,9 @@ pub(super) struct Plot {
     /// Of a sweep: logarithmic axes.
     #[arg(long)]
     log: bool,
-    /// Of a sweep: fit a power law to each curve between these x, such as 4..10.
-    #[arg(long, value_name = "LOW..HIGH", value_parser = range)]
-    fit: Option<[f64; 2]>,
+    /// Of a sweep: fit a power law to each curve between these x, such as 4..10; several times for several laws.
+    #[arg(long = "fit", value_name = "LOW..HIGH", value_parser = range)]
+    fits: Vec<[f64; 2]>,
     /// Of a sweep: a CSV file of curves from elsewhere, with rows of label, x and y under a head line.
     #[arg(long = "reference", value_name = "FILE")]
     references: Vec<PathBuf>,
@@ -36,8 +36,8 @@ pub(super) struct Plot {
 
 impl Plot {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
-        let Self { folders, x, y, by, log, fit, references } = self;
-        let view = sweep::View { x, y, by, log, fit, references };
+        let Self { folders, x, y, by, log, fits, references } = self;
+        let view = sweep::View { x, y, by, log, fits, references };
         let runs: Vec<&PathBuf> = folders.iter().filter(|folder| !sweep::is_sweep(folder)).collect();
         let paths = match runs.first() {
             None => vec![sweep::plot(&folders, &view)?],

@@ -67,10 +67,10 @@ pub(super) fn runout(
 }
 
 /// Rows that a running median takes.
-const MEDIAN: usize = 9;
+pub(super) const MEDIAN: usize = 9;
 
 /// Median of y over the neighbouring points, fewer at the ends; the last point stays.
-fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(super) fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let median = |k: usize| {
         let reach = (MEDIAN / 2).min(k).min(points.len() - 1 - k);
         let mut window: Vec<f64> = points[k - reach..=k + reach].iter().map(|point| point[1]).collect();

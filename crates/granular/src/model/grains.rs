@@ -5,7 +5,7 @@ mod stiffness;
 
 use super::boundaries::{self, Surroundings};
 use super::walls::{self, Beside};
-use super::{Action, Model, Problems, Shake, nearest, outputs, sample};
+use super::{Action, Model, Problems, PushRecord, Shake, nearest, outputs, push, sample};
 use crate::failure::Failure;
 use crate::sample_file::SavedSample;
 use crate::scene::{Change, FigureSpec, Sample, Scene, Stage, Writer};
@@ -116,6 +116,7 @@ pub(super) fn build<D: Dim>(
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, &walls.list, &mut problems);
     check_spec(name, spec, &mut problems);
+    push::check_figures(scene, &mut problems);
     let (Some(gravity), Some(sample), true) = (gravity, sample, problems.0.is_empty()) else {
         return Err(problems.0);
     };
@@ -238,6 +239,8 @@ fn actions<D: Dim>(
         }
     }
     let mut stages = Vec::new();
+    let weighty = |gravity: &[Acceleration]| gravity.iter().any(|value| value.value() != 0.0);
+    let mut falls = weighty(&scene.gravity);
     for (k, stage) in scene.stages.iter().enumerate() {
         let opened = openings.iter().filter(|(.., at)| *at == stage.name);
         let mut list: Vec<Action> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
@@ -249,7 +252,13 @@ fn actions<D: Dim>(
         }
         for (c, change) in stage.changes.iter().enumerate() {
             let path = format!("stages.{k}.changes.{c}");
+            if let Change::Gravity(values) = change {
+                falls = weighty(values);
+            }
             list.extend(match change {
+                Change::Push { .. } => {
+                    push::action::<D>(&path, change, (falls, scene.cell.is_some()), problems)
+                }
                 Change::Shake { .. } if scene.cell.is_some() => {
                     problems.add(
                         path,
@@ -304,21 +313,22 @@ fn action<D: Dim>(
         Change::Close(name) => Action::Wall(name.clone(), false),
         Change::Start(name) => Action::Moving(name.clone(), true),
         Change::Halt(name) => Action::Moving(name.clone(), false),
-        Change::Cell(_) => return None,
+        Change::Push { .. } | Change::Cell(_) => return None,
     })
 }
 
 /// Makes a change, if the solver is of this method.
-pub(super) fn apply(action: &Action, solver: &mut dyn Any) {
+pub(super) fn apply(action: &Action, solver: &mut dyn Any, pushed: &mut Option<PushRecord>) {
     if let Some(dem) = solver.downcast_mut::<Dem<D2>>() {
-        apply_to(action, dem);
+        apply_to(action, dem, pushed);
     } else if let Some(dem) = solver.downcast_mut::<Dem<D3>>() {
-        apply_to(action, dem);
+        apply_to(action, dem, pushed);
     }
 }
 
-fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>) {
+fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>, pushed: &mut Option<PushRecord>) {
     match action {
+        Action::Push(action) => *pushed = Some(push::apply(action, dem, *pushed)),
         Action::Friction(material, value) => dem.set_friction(*material, *value),
         Action::Gravity(values) => {
             dem.set_gravity(D::Vec::from_slice(values).expect("the number of axes was checked at build"));

@@ -84,6 +84,7 @@ impl FigureSpec {
             | Self::ForceChains { path, .. }
             | Self::Map { path, .. }
             | Self::Profile { path, .. }
+            | Self::Impact { path, .. }
             | Self::Spectrum { path, .. } => path,
         }
     }
@@ -149,6 +150,13 @@ impl FigureSpec {
                 writer: "Profile",
                 output: profile,
                 names: vec![field_of(column)],
+                stage: Some(stage),
+            },
+            Self::Impact { table, stage, .. } => Need {
+                key: "table",
+                writer: "Table",
+                output: table,
+                names: vec!["front", "kinetic_energy", "kinetic_energy_x"],
                 stage: Some(stage),
             },
             Self::Spectrum { table, column, stage, .. } => {

@@ -115,6 +115,10 @@ pub struct GridSpec {
     pub width: usize,
 }
 
+fn transient() -> f64 {
+    0.84
+}
+
 fn free_surface() -> f64 {
     FREE_SURFACE
 }
@@ -284,6 +288,20 @@ pub enum FigureSpec {
         /// Curves from elsewhere.
         #[serde(default)]
         references: Vec<ReferenceCurve>,
+    },
+    /// What grains do after a push: their front, energies of motion, and the decay of motion along x. What it measures are
+    /// metrics of the run, explained in `docs/impacts.md`.
+    Impact {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read; it must hold `front`, `kinetic_energy` and `kinetic_energy_x`.
+        table: String,
+        /// Name of the stage that begins with the push.
+        stage: String,
+        /// Time after the push from which the decay of motion along x counts, in units of sqrt(H/g) with the height H of the
+        /// grains at the push; 0.84 by default, which is 7.5 sqrt(d/g) of a pile 80 mean diameters high.
+        #[serde(default = "transient")]
+        transient: f64,
     },
     /// The spectrum of a column of a table from a stage on. Its highest peak is a metric of the run: `frequency_of_<column>`,
     /// and with a reference `strouhal_of_<column>`.

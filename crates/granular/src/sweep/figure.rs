@@ -18,8 +18,8 @@ pub struct View {
     pub by: Option<String>,
     /// Whether both axes are logarithmic.
     pub log: bool,
-    /// Least and largest x between which a power law is fitted to each curve.
-    pub fit: Option<[f64; 2]>,
+    /// Least and largest x between which a power law is fitted to each curve; several for several laws.
+    pub fits: Vec<[f64; 2]>,
     /// Files of curves from elsewhere: rows of label, x and y after a head line.
     pub references: Vec<PathBuf>,
 }
@@ -89,11 +89,17 @@ fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -
     for (colour, (label, groups)) in curves.into_iter().enumerate() {
         let label = if label.is_empty() { "this sweep".to_owned() } else { label };
         let series = series(label.clone(), groups).colour(colour % 7);
-        if let Some(range) = view.fit {
+        let mut before: Option<PowerLaw> = None;
+        for &range in &view.fits {
             let law = PowerLaw::of(&series.points, range).ok_or_else(|| {
-                Failure::io("--fit", format!("`{label}` has no three points in that range, all above zero"))
+                let [low, high] = range;
+                let reason = "has no three points there, all above zero";
+                Failure::io("--fit", format!("`{label}` {reason}: {low} to {high}"))
             })?;
-            chart = chart.with(law.series(range).colour(colour % 7)).note(format!("{label}: {law}"));
+            let meets = before.and_then(|before| before.meets(&law));
+            let meets = meets.map_or(String::new(), |x| format!("; meets the one before at {x:.4}"));
+            chart = chart.with(law.series(range).colour(colour % 7)).note(format!("{label}: {law}{meets}"));
+            before = Some(law);
         }
         chart = chart.with(series);
     }
@@ -292,6 +298,12 @@ impl PowerLaw {
         law.exponent.is_finite().then_some(law)
     }
 
+    /// Where two laws have the same value.
+    fn meets(&self, other: &Self) -> Option<f64> {
+        let x = (self.factor / other.factor).powf(1.0 / (other.exponent - self.exponent));
+        x.is_finite().then_some(x)
+    }
+
     fn series(&self, range: [f64; 2]) -> Series {
         // Enough points that the curve looks smooth also on linear axes.
         let x = |k: i32| range[0] * (range[1] / range[0]).powf(f64::from(k) / 40.0);
@@ -319,6 +331,9 @@ mod tests {
         assert!(law.error < 1e-7, "{law}");
         assert!(PowerLaw::of(&points, [7.0, 8.0]).is_none());
         assert!(PowerLaw::of(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]], [1.0, 3.0]).is_none());
+        let other = PowerLaw { factor: 1.35, exponent: 1.6, error: 0.0 };
+        assert!((law.meets(&other).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(law.meets(&PowerLaw { factor: 2.0, ..law }), None);
         // By hand: logarithms 0, 1, 2 and 0, 2, 1 have slope 1/2, squares left 3/2, error sqrt(3/2/2).
         let e = std::f64::consts::E;
         let law = PowerLaw::of(&[[1.0, 1.0], [e, e * e], [e * e, e]], [0.5, 10.0]).unwrap();

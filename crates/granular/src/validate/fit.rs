@@ -9,6 +9,13 @@ pub(crate) fn order(points: &[(f64, f64)]) -> f64 {
     covariance / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
+/// Factor and exponent of the power law through some points, by least squares of the logarithms.
+pub(crate) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
+    let exponent = order(points);
+    let rest = points.iter().map(|&(x, y)| y.ln() - exponent * x.ln()).sum::<f64>() / points.len() as f64;
+    (rest.exp(), exponent)
+}
+
 /// Mean of some values and its standard error.
 pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
@@ -36,6 +43,8 @@ mod tests {
     fn the_order_of_a_power_is_its_exponent() {
         let points: Vec<(f64, f64)> = [0.3, 0.11, 0.02].map(|h: f64| (h, 5.0 * h.powf(1.7))).to_vec();
         assert!((order(&points) - 1.7).abs() < 1e-12);
+        let (factor, exponent) = power_law(&points);
+        assert!((factor - 5.0).abs() < 1e-11 && (exponent - 1.7).abs() < 1e-12);
         assert_eq!(mean_and_error(&[1.0, 3.0]), (2.0, 1.0));
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(root_mean_square(&[3.0, -3.0]), 3.0);

@@ -104,7 +104,7 @@ pub(crate) fn record(text: &SceneText, names: &[&str], until: f64) -> Result<Rec
     let last = steps.len() - 1;
     for (index, &dt) in steps[..last].iter().enumerate() {
         begin(&mut model, index);
-        settled &= stages::stage(&scene, &mut model, index, dt)?;
+        settled &= stages::stage(&scene, &mut model, index, dt, Vec::new())?;
     }
     let height = number_of(&model.simulation, "height").unwrap_or(f64::NAN);
     let gravity = scene.gravity.iter().map(|g| g.value().powi(2)).sum::<f64>().sqrt();

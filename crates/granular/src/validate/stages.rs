@@ -35,12 +35,22 @@ pub(crate) fn run(text: &SceneText) -> Result<(Model, Vec<bool>), Failure> {
         for action in &model.stages[index] {
             model::apply(action, model.simulation.solver_mut());
         }
-        reached.push(stage(&scene, &mut model, index, dt)?);
+        reached.push(stage(&scene, &mut model, index, dt, Vec::new())?);
     }
     Ok((model, reached))
 }
 
-pub(super) fn stage(scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<bool, Failure> {
+/// Runs a stage whose changes were made. Returns whether it came to the end it waited for.
+///
+/// # Errors
+/// When the solver gives up.
+pub(super) fn stage(
+    scene: &Scene,
+    model: &mut Model,
+    index: usize,
+    dt: f64,
+    more: Vec<Scheduled>,
+) -> Result<bool, Failure> {
     let end = scene.stages[index].end;
     let reached = Arc::new(AtomicBool::new(false));
     let mut observers: Vec<Scheduled> = match end {
@@ -53,6 +63,7 @@ pub(super) fn stage(scene: &Scene, model: &mut Model, index: usize, dt: f64) -> 
         End::For(_) | End::Steady { .. } => vec![],
     };
     let waits = !observers.is_empty();
+    observers.extend(more);
     model.simulation.begin_segment(dt)?;
     model.simulation.run(end.longest(), &mut observers, &AtomicBool::new(false))?;
     Ok(!waits || reached.load(Ordering::Relaxed))

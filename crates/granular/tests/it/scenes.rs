@@ -41,6 +41,15 @@ const SHORTENED: &[(&str, &[&str])] = &[
             "figures.1.times=[0]",
         ],
     ),
+    (
+        "ch4_slope_impact",
+        &[
+            "sample.extent=Grains(100)",
+            "stages.0.end=For(\"0.02 s\")",
+            "stages.1.end=For(\"0.05 s\")",
+            "stages.2.end=For(\"0.1 s\")",
+        ],
+    ),
     ("ch4_shear", &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.02 s\")"]),
     ("ch5_cavity", &["solvers.fluid.spacing=50 mm", "stages.0.end=For(\"12 s\")"]),
     ("ch5_cylinder_steady", &["solvers.fluid.spacing=10 mm", "stages.0.end=For(\"1 s\")"]),

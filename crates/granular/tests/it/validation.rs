@@ -34,6 +34,7 @@ mod restitution;
 mod rotating_frame;
 mod sample_densities;
 mod sliding_to_rolling;
+mod slope_impact;
 mod square_array;
 mod taylor_green;
 mod tessellation;

@@ -1,0 +1,25 @@
+//! How a push is spread over the grains.
+
+use granular_dem::PushProfile;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// How a push is spread over the height of the grains.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum PushProfileSpec {
+    /// The same velocity for all.
+    #[default]
+    Uniform,
+    /// In proportion to the depth below the highest grain: most for the lowest grain, nothing for the highest, as from a quake
+    /// along the bottom.
+    Gradient,
+}
+
+impl From<PushProfileSpec> for PushProfile {
+    fn from(spec: PushProfileSpec) -> Self {
+        match spec {
+            PushProfileSpec::Uniform => Self::Uniform,
+            PushProfileSpec::Gradient => Self::Gradient,
+        }
+    }
+}
