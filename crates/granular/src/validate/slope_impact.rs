@@ -54,7 +54,7 @@ impl Plan {
                 seeds: vec![1],
                 stiffness: 2e5,
                 within: 1.8,
-                energies: vec![0.2, 0.5, 1.0, 2.0, 4.0],
+                energies: vec![0.2, 0.6, 2.0, 4.0],
             },
             Effort::Full => Self {
                 grains: 1000,

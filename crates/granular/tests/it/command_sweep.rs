@@ -123,7 +123,7 @@ fn draws_figures(scratch: &Scratch) {
         .expect(2)
         .says(&["the smaller first, such as 4..10"]);
     let wrong: &[(&[&str], &[&str])] = &[
-        (&["--fit", "1..2"], &["--fit: `this sweep` has no three points in that range"]),
+        (&["--fit", "1..2"], &["--fit: `this sweep` has no three points there"]),
         (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
         (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout [1], "]),
         (&["--x", "gravity"], &["--x: `gravity` is `[0, -9.81]` in a run"]),

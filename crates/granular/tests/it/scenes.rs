@@ -3,6 +3,7 @@
 use crate::support::{Scratch, workspace};
 use granular::scene::{Scene, Writer};
 use granular::scene_file::{SceneText, reference};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -48,6 +49,14 @@ const SHORTENED: &[(&str, &[&str])] = &[
             "stages.0.end=For(\"0.02 s\")",
             "stages.1.end=For(\"0.05 s\")",
             "stages.2.end=For(\"0.1 s\")",
+        ],
+    ),
+    (
+        "ch4_slope_impact/from_pile",
+        &[
+            "sample.path=\"HERE/ch4_slope_impact_scene/pile.csv\"",
+            "stages.0.end=For(\"0.02 s\")",
+            "stages.1.end=For(\"0.05 s\")",
         ],
     ),
     ("ch4_shear", &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.02 s\")"]),
@@ -140,25 +149,32 @@ const SHORTENED: &[(&str, &[&str])] = &[
 fn every_example_runs_and_leaves_what_its_scene_asks_for() {
     let scratch = Scratch::new("examples");
     let folders = fs::read_dir(workspace().join("examples")).unwrap().map(|entry| entry.unwrap().path());
-    let mut seen = 0;
+    let mut seen = BTreeSet::new();
     for folder in folders.filter(|path| path.is_dir()) {
         let name = folder.file_name().unwrap().to_str().unwrap();
-        let short = SHORTENED.iter().find(|(known, _)| *known == name);
-        let (_, edits) = short.unwrap_or_else(|| panic!("examples/{name} has no line in SHORTENED"));
-        let edits: Vec<&str> = edits.iter().flat_map(|edit| ["--set", edit]).collect();
         let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
-        let scenes: Vec<_> = files.filter(|path| path.extension().is_some_and(|end| end == "ron")).collect();
+        let mut scenes: Vec<_> =
+            files.filter(|path| path.extension().is_some_and(|end| end == "ron")).collect();
         assert!(!scenes.is_empty(), "examples/{name} has no scene");
+        // Others may start from what `scene.ron` leaves.
+        scenes.sort_by_key(|scene| scene.file_stem().unwrap() != "scene");
         for scene in scenes {
-            let out = format!("{name}_{}", scene.file_stem().unwrap().to_str().unwrap());
-            let arguments =
-                [&["run", scene.to_str().unwrap(), "--out", &out, "--quiet"], &edits[..]].concat();
+            let scene_name = format!("{name}/{}", scene.file_stem().unwrap().to_str().unwrap());
+            let short = SHORTENED.iter().find(|(known, _)| *known == scene_name);
+            let short = short.or_else(|| SHORTENED.iter().find(|(known, _)| *known == name));
+            let (key, edits) = short.unwrap_or_else(|| panic!("examples/{name} has no line in SHORTENED"));
+            seen.insert(key);
+            let here = scratch.path("");
+            let edits = edits.iter().map(|edit| edit.replace("HERE", here.to_str().unwrap()));
+            let edits: Vec<String> = edits.flat_map(|edit| ["--set".to_owned(), edit]).collect();
+            let out = scene_name.replace('/', "_");
+            let mut arguments = vec!["run", scene.to_str().unwrap(), "--out", &out, "--quiet"];
+            arguments.extend(edits.iter().map(String::as_str));
             scratch.granular(&arguments).expect(0);
             assert_outputs(&scratch.path(&out));
         }
-        seen += 1;
     }
-    assert_eq!(seen, SHORTENED.len(), "SHORTENED has a line without an example");
+    assert_eq!(seen.len(), SHORTENED.len(), "SHORTENED has a line without an example");
 }
 
 /// Tables parse, collections list files that are there, figures are images.
