@@ -122,10 +122,10 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
 
     /// Opens a register that was left for another law, or a new one; none when all are in use.
     fn open(&mut self, law: usize) -> Option<()> {
-        let used = &mut self.registers[..self.used];
-        if let Some(left) = used.iter_mut().find(|register| register.end == self.open.end) {
-            *left = self.open;
+        if self.used > 0 {
+            self.registers[self.open.end / WIDTH - 1] = self.open;
         }
+        let used = &self.registers[..self.used];
         let known = used.iter().find(|register| register.law == law && register.next < register.end);
         self.open = match known {
             Some(known) => *known,

@@ -15,6 +15,7 @@ use crate::model::ColumnSize;
 use crate::observers::number_of;
 use crate::run::StageRecord;
 use crate::scene::{FigureSpec, ReferenceCurve, Scene};
+pub(crate) use column::running_median;
 use granular_core::{ShownAs, Simulation};
 use granular_io::figure::{Axis, Chart, Series, Style};
 use granular_io::{Table, read_table};

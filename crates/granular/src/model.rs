@@ -158,13 +158,7 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     }
 }
 
-/// Makes a change. The solver is the one that [`build`] made.
-pub fn apply(action: &Action, solver: &mut dyn Solver) {
-    grains::apply(action, solver, &mut None);
-    fluid::apply(action, solver);
-}
-
-/// Makes all changes at the start of a stage; returns what its pushes did, if there are any.
+/// Makes all changes at the start of a stage; the solver is the one that [`build`] made. Returns what its pushes did, if there are any.
 pub fn begin(actions: &[Action], solver: &mut dyn Solver) -> Option<PushRecord> {
     let mut pushed = None;
     for action in actions {

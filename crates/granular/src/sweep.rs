@@ -7,14 +7,21 @@
 //! `sweep.json` lists the runs, and files in `locks/` keep processes from working on one run at the
 //! same time.
 //!
-//! ```no_run
+//! ```
 //! use granular::run::Interrupt;
 //! use granular::sweep::{Plan, Request, Work};
 //!
-//! let set = vec!["sample.aspect_ratio=0.4,0.8,2".to_owned(), "sample.seed=1..3".to_owned()];
-//! let plan = Plan::of(&Request { scene: "scene.ron".into(), set })?;
-//! assert_eq!(plan.points.len(), 9);
-//! plan.work("sweeps/column".as_ref(), Work::default(), &Interrupt::default())?;
+//! # let folder = std::env::temp_dir().join(format!("granular-sweep-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder).unwrap();
+//! # let (scene, out) = (folder.join("scene.ron"), folder.join("sweep"));
+//! # let template = granular::TEMPLATES.iter().find(|(name, _)| *name == "disk-on-incline").unwrap();
+//! # std::fs::write(&scene, template.1).unwrap();
+//! let set = vec!["materials.rock.friction=0.1,0.3".to_owned(), "stages.0.end=For(\"4 ms\")".to_owned()];
+//! let plan = Plan::of(&Request { scene, set })?;
+//! assert_eq!(plan.points.len(), 2);
+//! let outcome = plan.work(&out, Work::default(), &Interrupt::default())?;
+//! assert_eq!(outcome.report["runs"][1]["exit"], "done");
+//! # std::fs::remove_dir_all(folder).unwrap();
 //! # Ok::<(), granular::failure::Failure>(())
 //! ```
 

@@ -70,7 +70,7 @@ pub(super) fn runout(
 pub(super) const MEDIAN: usize = 9;
 
 /// Median of y over the neighbouring points, fewer at the ends; the last point stays.
-pub(super) fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(crate) fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let median = |k: usize| {
         let reach = (MEDIAN / 2).min(k).min(points.len() - 1 - k);
         let mut window: Vec<f64> = points[k - reach..=k + reach].iter().map(|point| point[1]).collect();

@@ -1,8 +1,8 @@
 //! A column collapse in memory: the template scene, run stage by stage without a run folder.
 
-use crate::check;
+use super::stages;
 use crate::failure::Failure;
-use crate::model::{self, Model};
+use crate::model::Model;
 use crate::observers::{Rest, number_of};
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
@@ -112,11 +112,7 @@ impl Collapse {
     /// # Errors
     /// When the scene is wrong or refused, or the solver gives up.
     pub(crate) fn run(&self) -> Result<Fallen, Failure> {
-        let (scene, mut model) = check::read(&self.scene()?)?;
-        let (_, steps, problems) = check::limits_of(&scene, &model);
-        if !problems.is_empty() {
-            return Err(Failure::Refused(problems));
-        }
+        let (scene, mut model, steps) = stages::open(&self.scene()?)?;
         let begun = Instant::now();
         let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
         let scale = number(&model, "potential_energy");
@@ -129,7 +125,7 @@ impl Collapse {
         // The grains that the gate lets go: the state at the start of the last stage.
         let height = number(&model, "height");
         let unit = (column.height / gravity(&scene)).sqrt();
-        begin(&mut model, settling.len());
+        stages::begin(&mut model, settling.len());
         residual = residual.max(self.part(&mut model, *last, FLOW * unit, Vec::new())?);
         let flow_front = number(&model, "front");
         let moving = |model: &Model| number(model, "kinetic_energy") + number(model, "rotational_energy");
@@ -159,18 +155,14 @@ impl Collapse {
         time: f64,
         look: impl Fn(&Simulation) -> Result<T, Failure>,
     ) -> Result<[T; 2], Failure> {
-        let (scene, mut model) = check::read(&self.scene()?)?;
-        let (_, steps, problems) = check::limits_of(&scene, &model);
-        if !problems.is_empty() {
-            return Err(Failure::Refused(problems));
-        }
+        let (scene, mut model, steps) = stages::open(&self.scene()?)?;
         let column = model.column.expect("the template is a column");
         let (last, settling) = steps.split_last().expect("the template has stages");
         for (index, &dt) in settling.iter().enumerate() {
             self.stage(&scene, &mut model, index, dt)?;
         }
         let settled = look(&model.simulation)?;
-        begin(&mut model, settling.len());
+        stages::begin(&mut model, settling.len());
         let unit = (column.height / gravity(&scene)).sqrt();
         self.part(&mut model, *last, time * unit, Vec::new())?;
         Ok([settled, look(&model.simulation)?])
@@ -178,7 +170,7 @@ impl Collapse {
 
     /// Runs a stage and returns the largest energy residual.
     fn stage(&self, scene: &Scene, model: &mut Model, index: usize, dt: f64) -> Result<f64, Failure> {
-        begin(model, index);
+        stages::begin(model, index);
         match scene.stages[index].end {
             End::For(_) | End::Steady { .. } | End::Packed { .. } => {
                 self.part(model, dt, scene.stages[index].end.longest(), Vec::new())
@@ -212,12 +204,6 @@ impl Collapse {
 }
 
 /// Makes the changes at the start of a stage.
-fn begin(model: &mut Model, index: usize) {
-    for action in &model.stages[index] {
-        model::apply(action, model.simulation.solver_mut());
-    }
-}
-
 fn gravity(scene: &Scene) -> f64 {
     scene.gravity.iter().map(|component| component.value().powi(2)).sum::<f64>().sqrt()
 }

@@ -1,5 +1,10 @@
 //! Statistics of errors: order of convergence, mean and its uncertainty.
 
+/// The larger number; one that is not a number does not get lost.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
 /// Slope of the least-squares line through the logarithms of steps and errors: the order.
 pub(crate) fn order(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|&(step, error)| (step.ln(), error.ln())).collect();

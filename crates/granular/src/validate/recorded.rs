@@ -1,9 +1,9 @@
 //! Columns that collapse in memory, with numbers over time after their release.
 
+use super::fit::larger;
 use super::stages;
-use crate::check;
 use crate::failure::Failure;
-use crate::model;
+use crate::figures::running_median;
 use crate::observers::number_of;
 use crate::probes;
 use crate::scene_file::SceneText;
@@ -18,8 +18,6 @@ const LOOKS: f64 = 20.0;
 /// Steps in the shortest contact: enough that the balance of energy closes to a thousandth also in tall columns, where dashpots
 /// take most of it.
 const STEPS: u32 = 32;
-/// Looks of which the front is a median: grains at the tip touch the main mass off and on.
-const MEDIAN: usize = 9;
 
 /// A collapse over time.
 #[derive(Clone, Debug)]
@@ -59,8 +57,9 @@ impl Recorded {
 
     /// `(L - L0) / L0` over time.
     pub(crate) fn run_outs(&self) -> Vec<f64> {
-        let fronts = running_median(&self.column("front"));
-        fronts.into_iter().map(|front| (front - self.width) / self.width).collect()
+        let fronts: Vec<[f64; 2]> =
+            self.times().into_iter().zip(self.column("front")).map(|(time, front)| [time, front]).collect();
+        running_median(&fronts).into_iter().map(|[_, front]| (front - self.width) / self.width).collect()
     }
 
     /// `(L - L0) / L0` at the end.
@@ -74,8 +73,7 @@ impl Recorded {
         let (scale, start) = (first("potential_energy"), first("energy_residual"));
         let residuals =
             self.column("energy_residual").into_iter().map(|residual| ((residual - start) / scale).abs());
-        // What is not a number must not get lost in a comparison.
-        residuals.fold(0.0, |largest, one| if one.is_nan() || one > largest { one } else { largest })
+        residuals.fold(0.0, larger)
     }
 }
 
@@ -86,30 +84,19 @@ impl Recorded {
 /// When the scene is wrong or refused, or the solver gives up.
 pub(crate) fn record(text: &SceneText, names: &[&str], until: f64) -> Result<Recorded, Failure> {
     let mut text = text.clone();
-    let probes: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-    // Never written, but the ledger of energy is kept only if an output asks for it.
-    let table = format!("Table(path: \"series.csv\", probes: [{}])", probes.join(", "));
-    text.set(&format!("outputs=[(every: Time(\"1 s\"), write: {table})]"))?;
+    text.set(&stages::asking_for(names))?;
     text.set(&format!("solvers.grains.steps_per_contact={STEPS}"))?;
-    let (scene, mut model) = check::read(&text)?;
-    let (_, steps, problems) = check::limits_of(&scene, &model);
-    if !problems.is_empty() {
-        return Err(Failure::Refused(problems));
-    }
+    let (scene, mut model, steps) = stages::open(&text)?;
     let mut settled = true;
-    let begin = |model: &mut model::Model, index: usize| {
-        let actions = std::mem::take(&mut model.stages[index]);
-        actions.iter().for_each(|action| model::apply(action, model.simulation.solver_mut()));
-    };
     let last = steps.len() - 1;
     for (index, &dt) in steps[..last].iter().enumerate() {
-        begin(&mut model, index);
+        stages::begin(&mut model, index);
         settled &= stages::stage(&scene, &mut model, index, dt, Vec::new())?;
     }
     let height = number_of(&model.simulation, "height").unwrap_or(f64::NAN);
     let gravity = scene.gravity.iter().map(|g| g.value().powi(2)).sum::<f64>().sqrt();
     let unit = (height / gravity).sqrt();
-    begin(&mut model, last);
+    stages::begin(&mut model, last);
     let rows = Arc::new(Mutex::new(Vec::new()));
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
     let look = Look { names: names.clone(), unit, rows: rows.clone() };
@@ -137,15 +124,4 @@ impl Observer for Look {
         self.rows.lock().expect("only this thread holds it").push(row);
         Ok(Flow::Continue)
     }
-}
-
-/// Median of the neighbouring values, fewer at the ends.
-fn running_median(values: &[f64]) -> Vec<f64> {
-    let median = |k: usize| {
-        let reach = (MEDIAN / 2).min(k).min(values.len() - 1 - k);
-        let mut window = values[k - reach..=k + reach].to_vec();
-        window.sort_unstable_by(f64::total_cmp);
-        window[reach]
-    };
-    (0..values.len()).map(median).collect()
 }

@@ -3,13 +3,13 @@
 mod claims;
 
 use super::Effort;
+use super::fit::larger;
 use super::parallel;
 use super::row::{Measure, Rows, Tier};
 use super::stages;
-use crate::check;
 use crate::failure::Failure;
 use crate::figures::impact::Impact;
-use crate::model::{self, Model};
+use crate::model::Model;
 use crate::observers::number_of;
 use crate::run::StageRecord;
 use crate::scene_file::SceneText;
@@ -157,28 +157,20 @@ fn required(rows: &mut Rows, plan: &Plan, piles: &[Pile], struck: &[Struck]) {
 
 impl Pile {
     fn build(plan: &Plan, seed: u64) -> Result<Self, Failure> {
-        let found = crate::TEMPLATES.iter().find(|(name, _)| *name == "slope-impact");
-        let (name, text) = found.expect("there is a template of a slope under impact");
-        let mut text = SceneText::new(*name, *text);
-        for edit in [
-            "figures=[]".to_owned(),
+        let edits = [
+            stages::asking_for(&PROBES),
             format!("sample.extent=Grains({})", plan.grains),
             format!("sample.seed={seed}"),
             format!("materials.grain.normal_stiffness={}", plan.stiffness),
             format!("stages.1.end.within={}", plan.within),
             format!("stages.{IMPACT}.end.within={}", plan.within),
             format!("stages.{IMPACT}.time_step={}", STEP * (STIFFNESS / plan.stiffness).sqrt()),
-        ] {
-            text.set(&edit)?;
-        }
-        let (scene, mut model) = check::read(&text)?;
-        let (_, steps, problems) = check::limits_of(&scene, &model);
-        if !problems.is_empty() {
-            return Err(Failure::Refused(problems));
-        }
+        ];
+        let text = stages::template("slope-impact", &edits)?;
+        let (scene, mut model, steps) = stages::open(&text)?;
         let mut rests = true;
         for (index, &dt) in steps.iter().enumerate().take(IMPACT) {
-            model::begin(&model.stages[index], model.simulation.solver_mut());
+            stages::begin(&mut model, index);
             rests &= stages::stage(&scene, &mut model, index, dt, Vec::new())?;
         }
         let number = |name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
@@ -199,12 +191,11 @@ impl Pile {
         let mut text = self.text.clone();
         text.set(&format!("stages.{IMPACT}.changes.0=Push({strength}, profile: {})", blow.profile))?;
         text.set(&format!("stages.{IMPACT}.changes.1.value={}", blow.base_friction))?;
-        let (scene, mut model) = check::read(&text)?;
-        let (_, steps, _) = check::limits_of(&scene, &model);
+        let (scene, mut model, steps) = stages::open(&text)?;
         model.simulation.restore(&self.sections)?;
         let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
         let before = (number(&model, "kinetic_energy"), momentum(&model));
-        let push = model::begin(&model.stages[IMPACT], model.simulation.solver_mut());
+        let push = stages::begin(&mut model, IMPACT);
         let mass = push.map_or(f64::NAN, |push| push.mass);
         let gained = [number(&model, "kinetic_energy") - before.0, momentum(&model) - before.1];
         let record = StageRecord {
@@ -245,11 +236,6 @@ impl Pile {
             rests,
         })
     }
-}
-
-/// The larger number; one that is not a number does not get lost.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 /// Momentum along x \[kg/s\].

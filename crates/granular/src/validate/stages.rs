@@ -2,7 +2,7 @@
 
 use crate::check;
 use crate::failure::Failure;
-use crate::model::{self, Model};
+use crate::model::{self, Model, PushRecord};
 use crate::observers::{Packed, Rest};
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
@@ -20,21 +20,41 @@ pub(crate) fn template(name: &str, edits: &[String]) -> Result<SceneText, Failur
     Ok(text)
 }
 
+/// The change of a scene whose only output asks for these numbers: it is never written, but the ledger of energy is
+/// kept only for who asks.
+pub(super) fn asking_for(names: &[&str]) -> String {
+    let probes: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let table = format!("Table(path: \"series.csv\", probes: [{}])", probes.join(", "));
+    format!("outputs=[(every: Time(\"1 s\"), write: {table})]")
+}
+
+/// A scene, its model, and the step of each of its stages \[s\].
+///
+/// # Errors
+/// When the scene is wrong or refused.
+pub(super) fn open(text: &SceneText) -> Result<(Scene, Model, Vec<f64>), Failure> {
+    let (scene, model) = check::read(text)?;
+    let (_, steps, problems) = check::limits_of(&scene, &model);
+    if !problems.is_empty() {
+        return Err(Failure::Refused(problems));
+    }
+    Ok((scene, model, steps))
+}
+
+/// Makes the changes at the start of a stage; returns what its pushes did, if there are any.
+pub(super) fn begin(model: &mut Model, index: usize) -> Option<PushRecord> {
+    model::begin(&model.stages[index], model.simulation.solver_mut())
+}
+
 /// Runs all stages of a scene. Returns the model at its end, and whether each stage came to the end it waited for.
 ///
 /// # Errors
 /// When the scene is wrong or refused, or the solver gives up.
 pub(crate) fn run(text: &SceneText) -> Result<(Model, Vec<bool>), Failure> {
-    let (scene, mut model) = check::read(text)?;
-    let (_, steps, problems) = check::limits_of(&scene, &model);
-    if !problems.is_empty() {
-        return Err(Failure::Refused(problems));
-    }
+    let (scene, mut model, steps) = open(text)?;
     let mut reached = Vec::new();
     for (index, dt) in steps.into_iter().enumerate() {
-        for action in &model.stages[index] {
-            model::apply(action, model.simulation.solver_mut());
-        }
+        begin(&mut model, index);
         reached.push(stage(&scene, &mut model, index, dt, Vec::new())?);
     }
     Ok((model, reached))

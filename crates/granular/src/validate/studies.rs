@@ -13,21 +13,8 @@ use super::parallel;
 use super::recorded::{Recorded, record};
 use super::row::Rows;
 use crate::failure::Failure;
+use crate::scene::names::ENERGIES;
 
-/// What is recorded of a column: all of it for the balance of energy.
-const NUMBERS: [&str; 11] = [
-    "front",
-    "height",
-    "potential_energy",
-    "kinetic_energy",
-    "rotational_energy",
-    "loss_sliding",
-    "loss_sliding_at_walls",
-    "loss_normal_damping",
-    "loss_tangential_damping",
-    "loss_rolling",
-    "energy_residual",
-];
 /// Share of the potential energy at the release that may be missing in the balance.
 const RESIDUAL: f64 = 1e-3;
 /// Share by which a claim without a tolerance of its own may be missed.
@@ -97,7 +84,11 @@ fn collapse(size: &Size, column: Column) -> Result<Recorded, Failure> {
             collapse = collapse.set(format!("materials.{material}.normal_stiffness={stiffness}"));
         }
     }
-    record(&collapse.scene()?, &NUMBERS, size.until[usize::from(column.nominal >= 1.0)])
+    record(
+        &collapse.scene()?,
+        &[&["front", "height"], ENERGIES].concat(),
+        size.until[usize::from(column.nominal >= 1.0)],
+    )
 }
 
 /// Numbers with a blank between.
