@@ -6,6 +6,7 @@ mod tests;
 
 pub use nodes::NodeKey;
 
+use crate::blocks::inside_pool;
 use crate::exchange::{Coupling, CouplingError};
 use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::snapshot::{Section, SnapshotError};
@@ -256,7 +257,7 @@ impl Simulation {
     /// # Errors
     /// When the solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        self.graph.advance(steps)?;
+        inside_pool(|| self.graph.advance(steps))?;
         self.clock.steps_in_segment += steps;
         self.clock.step += steps;
         Ok(())

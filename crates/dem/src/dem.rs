@@ -15,6 +15,7 @@ use crate::shaking::Shaken;
 use crate::traffic::Traffic;
 use crate::wall::{Shape, Wall};
 use crate::{lists, motion};
+use granular_core::blocks::inside_pool;
 use granular_core::solver::check_step;
 use granular_core::{
     Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
@@ -349,6 +350,23 @@ impl<D: Dim> Dem<D> {
         (self.steps + steps).is_multiple_of(SORT_EVERY) && self.len() >= SORT_FROM
     }
 
+    /// Takes steps outside a periodic cell.
+    fn take(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        // Between two steps of one call, the end of one and the start of the next share a pass.
+        let mut opened = false;
+        for remaining in (0..steps).rev() {
+            if !opened {
+                self.sort_if_due();
+                self.exchange_if_due();
+                motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
+            }
+            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
+            self.load_and_kick(dt, opened)?;
+        }
+        self.movers.place(self.clock.time());
+        Ok(())
+    }
+
     /// One step between its two halves: lists, loads, kick.
     fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
         let mut stride = motion::fastest(&self.speeds) * dt;
@@ -479,22 +497,9 @@ impl<D: Dim> Solver for Dem<D> {
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);
-        if self.cell.is_some() {
-            return self.advance_in_cell(dt, steps);
-        }
-        // Between two steps of one call, the end of one and the start of the next share a pass.
-        let mut opened = false;
-        for remaining in (0..steps).rev() {
-            if !opened {
-                self.sort_if_due();
-                self.exchange_if_due();
-                motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
-            }
-            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
-            self.load_and_kick(dt, opened)?;
-        }
-        self.movers.place(self.clock.time());
-        Ok(())
+        inside_pool(
+            || if self.cell.is_some() { self.advance_in_cell(dt, steps) } else { self.take(dt, steps) },
+        )
     }
 
     fn location(&self) -> Location<'_> {

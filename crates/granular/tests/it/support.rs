@@ -11,6 +11,9 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+/// A command that takes longer hangs. The longest takes seconds; a machine that others load may be slow.
+const HANG: Duration = Duration::from_secs(900);
+
 /// A column of 120 disks that collapses: all kinds of outputs and figures, about half a second.
 pub(crate) const SMALL: &str = include_str!("small.ron");
 
@@ -95,7 +98,7 @@ impl Running {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
-            if begun.elapsed() > Duration::from_secs(120) {
+            if begun.elapsed() > HANG {
                 self.child.kill().unwrap();
                 panic!("the command hangs; it said {}", self.text("err"));
             }
