@@ -172,8 +172,10 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
             to.velocity[k] = own.velocity - other.velocity;
             (to.own_radius[k], to.other_radius[k]) = (own.radius, other.radius);
             (to.own_mass[k], to.other_mass[k]) = (own.mass, other.mass);
-            if L::TANGENTIAL {
+            if L::TANGENTIAL || LEDGER {
                 to.start_velocity[k] = own.start_velocity - other.start_velocity;
+            }
+            if L::TANGENTIAL {
                 (to.own_start_spin[k], to.other_start_spin[k]) = (own.start_spin, other.start_spin);
                 if view.predicts || L::TWISTING {
                     (to.own_spin[k], to.other_spin[k]) = (own.spin, other.spin);

@@ -94,8 +94,8 @@ impl<'a, D: Dim> View<'a, D> {
         view.velocity = &view.velocity[..n];
         view.radius = &view.radius[..n];
         view.mass = &view.mass[..n];
+        view.start_velocity = &view.start_velocity[..n];
         if L::TANGENTIAL {
-            view.start_velocity = &view.start_velocity[..n];
             view.start_spin = &view.start_spin[..n];
             view.spin = &view.spin[..n];
         }
@@ -112,14 +112,13 @@ impl<'a, D: Dim> View<'a, D> {
     pub(crate) fn body<L: ContactLaw<D>>(&self, grain: usize) -> Body<D> {
         let mut body = Body {
             velocity: self.velocity[grain],
-            start_velocity: D::Vec::ZERO,
+            start_velocity: self.start_velocity[grain],
             spin: D::Spin::ZERO,
             start_spin: D::Spin::ZERO,
             radius: self.radius[grain],
             mass: self.mass[grain],
         };
         if L::TANGENTIAL {
-            body.start_velocity = self.start_velocity[grain];
             body.start_spin = self.start_spin[grain];
             if self.predicts || L::TWISTING {
                 body.spin = self.spin[grain];
@@ -368,12 +367,14 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
 ) -> Meeting<D> {
     let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
+    let start_relative = own.start_velocity - other.start_velocity;
     let (presence, overlap) = share_of_step(overlap, approach, view.dt);
     let mut meeting = Meeting {
         normal,
         overlap,
         presence,
         approach,
+        start_approach: -start_relative.dot(normal),
         slip: D::Spin::ZERO,
         roll: D::Spin::ZERO,
         start_slip: D::Spin::ZERO,
@@ -392,13 +393,12 @@ fn meeting<D: Dim, L: ContactLaw<D>>(
             meeting.slip = D::cross(normal, relative) - surface;
             meeting.roll = D::tangential(own.spin - other.spin, normal);
         }
-        let relative = own.start_velocity - other.start_velocity;
         // The velocities are those half a step before the normal. Bodies that turn as one with a
         // component along it would slide on each other by this difference.
         let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
         let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
         // Within the tangent plane of now, or the moments on the two bodies would not balance.
-        meeting.start_slip = D::tangential(D::cross(start_normal, relative) - surface, normal);
+        meeting.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
         meeting.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
         meeting.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {

@@ -42,7 +42,10 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
         let damping = self.damping_factor * m.effective_mass.sqrt();
         let force = self.force(m.overlap, m.presence, m.approach, damping);
         // Where the cut acts, the dashpot takes up what the spring gives back.
-        tally.normal_damping(|| (force - self.stiffness * m.overlap) * m.approach * m.dt);
+        tally.normal_damping(|| {
+            let damping = if force == 0.0 { 0.0 } else { damping };
+            m.damped(force, self.stiffness * m.overlap, damping) + m.kept(self.stiffness)
+        });
         Load::along_normal(force)
     }
 
@@ -128,7 +131,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         *memory = D::follow(*memory, m.normal, m.twist * m.dt);
         let slid = self.slider(m.effective_mass).load(memory, &Motion::of(m, m.slip, m.start_slip), cap);
         tally.tangential_damping(|| slid.damped);
-        tally.sliding(|| slid.slid);
+        tally.sliding(|| slid.lost(self.friction));
         load.tangential = slid.force;
         load
     }

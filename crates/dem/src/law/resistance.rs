@@ -45,7 +45,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         let advance = motion.start_rate * motion.advances().0;
         let carried = self.frictional.carry(&last, &slider, rolling, advance);
         let slid = slider.load(rolling, &motion, cap);
-        tally.rolling(|| carried + slid.damped + slid.slid);
+        tally.rolling(|| carried + slid.damped + slid.lost(self.rolling_friction));
         load.rolling = slid.force * m.effective_radius;
         load
     }
@@ -118,7 +118,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         let advance = motion.start_rate * motion.advances().0;
         let carried = frictional.carry(&last, &slider, twisting, advance);
         let slid = slider.load(twisting, &motion, cap);
-        tally.rolling(|| carried + slid.damped + slid.slid);
+        tally.rolling(|| carried + slid.damped + slid.lost(self.twisting_friction));
         load.rolling += D::about(m.normal, slid.force * radius);
         load
     }

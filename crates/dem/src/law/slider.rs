@@ -28,8 +28,17 @@ pub struct Slid<S> {
     pub force: S,
     /// Energy lost in the dashpot over the step.
     pub damped: f64,
-    /// Energy lost by sliding over the step.
+    /// Energy lost by sliding over the step, with friction.
     pub slid: f64,
+}
+
+impl<S> Slid<S> {
+    /// Energy lost by sliding over the step at this coefficient of friction: without friction the force is zero, and so
+    /// is its work, where the sums over a contact that `slid` is a part of are zero to the second order only.
+    #[inline(always)]
+    pub fn lost(&self, friction: f64) -> f64 {
+        if friction > 0.0 { self.slid } else { 0.0 }
+    }
 }
 
 /// How two surfaces pass each other in a step.
@@ -79,8 +88,12 @@ impl Slider {
         let stuck = -(trial * self.stiffness + rate * damping);
         let size = stuck.length_squared();
         if size <= cap * cap {
+            let slid = self.at_ends(*spring, trial, motion);
             *spring = trial + motion.start_rate * after;
-            return Slid { force: stuck, damped: damping * rate.length_squared() * dt, slid: 0.0 };
+            // What the prediction adds to the rate counts against it: see `Meeting::damped`.
+            let gained = rate - motion.start_rate;
+            let squared = rate.length_squared() - 2.0 * gained.length_squared();
+            return Slid { force: stuck, damped: damping * squared * dt, slid };
         }
         let size = size.sqrt();
         let direction = stuck * (1.0 / size);
@@ -88,12 +101,38 @@ impl Slider {
         let hold = (self.stiffness + damping / dt).max(f64::MIN_POSITIVE);
         let slip = (size - cap) / hold;
         let left = rate + direction * (slip / dt);
-        *spring = trial + direction * slip + motion.start_rate * after;
+        let slid_back = trial + direction * slip;
+        let at_ends = self.at_ends(*spring, slid_back, motion);
+        *spring = slid_back + motion.start_rate * after;
         let damped = damping * left.length_squared() * dt;
         // The force while it slides is the mean of this step's and the last one's, so that the
         // sum of losses and stored energy follows the work to second order.
         let mean = cap + 0.5 * self.stiffness * (motion.start_rate.dot(direction) * before + slip);
-        Slid { force: direction * cap, damped, slid: mean * slip }
+        Slid { force: direction * cap, damped, slid: mean * slip + at_ends }
+    }
+
+    /// Work of the force in the first and the last step of a contact beyond what goes into the spring and is lost by
+    /// sliding, while the spring goes from `last` to `now`.
+    ///
+    /// Over a contact the work is that of the mean of two steps' forces over the way from the middle of the one to
+    /// that of the other. Surfaces that overlap in a part of a step only move the spring by a part of that way.
+    #[inline(always)]
+    fn at_ends<S: Linear>(&self, last: S, now: S, motion: &Motion<S>) -> f64 {
+        if motion.presence >= 1.0 {
+            return 0.0;
+        }
+        let (before, after) = motion.advances();
+        let Motion { start_rate: rate, dt, last_dt, enters, .. } = *motion;
+        let missed = 0.5 * (dt + last_dt) - before;
+        let work = 0.5 * missed * rate.dot(last + now);
+        let beside = if enters {
+            // What the next step will miss, since the spring begins it further back.
+            -after * rate.dot(now) - 0.5 * after * (dt + after) * rate.length_squared()
+        } else {
+            // The way from the last force to none.
+            0.5 * dt * rate.dot(now)
+        };
+        self.stiffness * (work + beside)
     }
 
     /// Carries a spring over from another stiffness, `last`, and returns the energy lost \[J\].
@@ -115,11 +154,10 @@ impl Slider {
         }
     }
 
-    /// Energy held at the end of a contact. The dashpot then lets the spring go; without one the
-    /// spring has slid back with the cap already.
+    /// Energy held at the end of a contact.
     #[inline(always)]
     pub fn held<S: Linear>(&self, spring: S) -> f64 {
-        if self.damping > 0.0 { 0.5 * self.stiffness * spring.length_squared() } else { 0.0 }
+        0.5 * self.stiffness * spring.length_squared()
     }
 
     /// Force and stored energy between steps: the spring is half a step behind, and what the next

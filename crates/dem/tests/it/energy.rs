@@ -2,11 +2,12 @@
 
 use crate::conservation::{Case, any_case, cases};
 use crate::sample::{Lattice, Random, down};
+use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
 use granular_dem::law::Meeting;
 use granular_dem::{
-    ContactLaw, ContactModel, Dem, LinearFrictional, LinearRolling, Materials, Options, PairProperties,
-    Setup, Tally, Tension,
+    ContactLaw, ContactModel, Dem, Dem2, Elasticity, Grain, LinearFrictional, LinearRolling, Material,
+    Materials, Options, PairProperties, Setup, Tally, Tension, Wall,
 };
 use proptest::prelude::*;
 
@@ -80,8 +81,7 @@ pub(crate) const QUIET: Case = Case {
 #[test]
 fn the_residual_falls_with_the_step() {
     for tension in [Tension::Cut, Tension::Kept] {
-        // Without friction with the square of the step. Where friction begins and ends to slide,
-        // and where the spring of a contact that ends is dropped, the books are coarser.
+        // With the square of the step. Where friction begins and ends to slide the books are coarser.
         for (friction, least, contact) in [
             (0.0, 1.9, ContactModel::Linear),
             (0.1, 1.3, ContactModel::Linear),
@@ -101,7 +101,7 @@ fn the_residual_falls_with_the_step() {
             let (coarse, fine) = (mean(1.0), mean(0.0625));
             let order = (coarse / fine).ln() / 16.0_f64.ln();
             println!("{contact:?} {tension:?} friction {friction}: {coarse:.2e} {fine:.2e} order {order:.2}");
-            assert!(coarse < 5e-3 && fine < 1e-4, "{tension:?} {friction}: {coarse:e} {fine:e}");
+            assert!(coarse < 1e-3 && fine < 2e-5, "{tension:?} {friction}: {coarse:e} {fine:e}");
             assert!(order > least, "{tension:?} {friction}: order {order}");
         }
     }
@@ -145,6 +145,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
         overlap,
         presence: 1.0,
         approach: 0.0,
+        start_approach: 0.0,
         slip: <D::Spin as Linear>::ZERO,
         roll: <D::Spin as Linear>::ZERO,
         start_slip: <D::Spin as Linear>::ZERO,
@@ -224,4 +225,56 @@ fn a_small_cycle_is_elastic_and_a_large_one_pays_for_its_sliding() {
     // What went in is stored or lost; the rest is the error of the scheme.
     let rest = cycle.work - cycle.stored - cycle.lost;
     assert!(rest.abs() < 0.05 * cycle.work, "{rest:e} of {cycle:?}");
+}
+
+/// Energy missing after a disk has hit a floor, over its energy before, mean over moments of the impact within a step.
+fn missing_after_impact(glass: Material, contact: ContactModel, tension: Tension, per_contact: f64) -> f64 {
+    let moments = 40;
+    let missing = |moment: i32| {
+        let mut materials = Materials::new();
+        let glass = materials.add(glass).unwrap();
+        let floor = Wall::plane("floor", DVec2::ZERO, DVec2::Y, glass).unwrap();
+        // At 45 degrees: first it slides, then it may stick.
+        let contact_time = if contact == ContactModel::Linear { 0.113e-3 } else { 1.43e-3 };
+        let (radius, speed, dt) = (0.5e-3, 0.1, contact_time / per_contact);
+        let height = radius + speed * dt * (2.0 + (f64::from(moment) + 0.5) / f64::from(moments));
+        let disk = Grain::at(DVec2::new(0.0, height), radius, glass).moving(DVec2::new(speed, -speed));
+        let options = Options { ledger: true, contact, tension, ..Options::default() };
+        let (grains, walls) = (vec![disk], vec![floor]);
+        let mut dem = Dem2::new(Setup { materials, grains, walls, gravity: DVec2::ZERO, options }).unwrap();
+        let start = dem.energies().mechanical();
+        dem.advance(dt, (4.0 * per_contact) as u64).unwrap();
+        assert!(dem.grain(0).velocity.y > 0.0 && dem.energies().contact == 0.0);
+        dem.energy_residual().unwrap() / start
+    };
+    (0..moments).map(missing).sum::<f64>() / f64::from(moments)
+}
+
+#[test]
+fn the_books_of_an_impact_close() {
+    for tension in [Tension::Cut, Tension::Kept] {
+        for (restitution, friction) in
+            [(1.0, 0.2), (0.75, 0.0), (0.75, 0.2), (0.75, 0.53), (0.3, 0.0), (0.3, 0.53)]
+        {
+            let glass = Material {
+                restitution,
+                friction,
+                normal_stiffness: 1.6e6,
+                density: 2650.0,
+                ..Material::default()
+            };
+            let missing = |steps| missing_after_impact(glass, ContactModel::Linear, tension, steps).abs();
+            let (coarse, fine) = (missing(25.0), missing(50.0));
+            // A tangential dashpot that still acts when it slips or is cut leaves most.
+            let allowed = if friction > 0.5 { 2.5e-3 } else { 3e-4 };
+            assert!(
+                coarse < allowed && fine < allowed / 3.0,
+                "{tension:?} {restitution} {friction}: {coarse:e} {fine:e}"
+            );
+            let elasticity = Some(Elasticity { young_modulus: 1e8, poisson_ratio: 0.25 });
+            let missing =
+                missing_after_impact(Material { elasticity, ..glass }, ContactModel::Hertz, tension, 50.0);
+            assert!(missing.abs() < 1e-3, "{tension:?} {restitution} {friction}, Hertz: {missing:e}");
+        }
+    }
 }

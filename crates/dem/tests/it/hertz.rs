@@ -151,6 +151,7 @@ fn driven<D: Dim>(properties: &PairProperties, stride: f64, seed: u64) -> [f64; 
         overlap,
         presence: 1.0,
         approach: 0.0,
+        start_approach: 0.0,
         slip: zero,
         roll: zero,
         start_slip: zero,
