@@ -11,9 +11,6 @@ const RADII: (f64, f64) = (0.4e-3, 0.6e-3);
 const SPACING: f64 = 1.5e-3;
 /// Time in which they fall and come to rest \[s\].
 const TIME: f64 = 0.08;
-/// Steps in the shortest contact. The residual is the error of the scheme: with the 25 steps of the
-/// default it is 2.5 times as large.
-const STEPS: f64 = 40.0;
 /// Looks at the residual.
 const LOOKS: u64 = 80;
 
@@ -102,7 +99,7 @@ fn falling<D: Dim>(contact: ContactModel, material: Material) -> Dem<D> {
         walls.push(plane::<D>("low", axis, 0.0, 1.0, glass));
         walls.push(plane::<D>("high", axis, SPACING * across as f64, -1.0, glass));
     }
-    let options = Options { contact, ledger: true, steps_per_contact: STEPS, ..Options::default() };
+    let options = Options { contact, ledger: true, ..Options::default() };
     let gravity = D::Vec::along(D::UP, -9.81);
     Dem::new(Setup { materials, grains, walls, gravity, options }).expect(fits)
 }
