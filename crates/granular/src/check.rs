@@ -237,9 +237,10 @@ impl fmt::Display for Report {
         let megabytes = self.memory.bytes as f64 / 1e6;
         writeln!(f, "\nmemory    {megabytes:.2} MB, {} bytes per {item}", self.memory.bytes_per_item)?;
         let threads = rayon::current_num_threads();
+        let later = if item == "grain" { "; grains that pack later take longer" } else { "" };
         writeln!(
             f,
-            "run time  at most {} on {threads} threads (measured)",
+            "run time  at most {} on {threads} threads (measured over the first steps{later})",
             duration(self.estimated_seconds)
         )?;
         writeln!(f, "\nleft out")?;
