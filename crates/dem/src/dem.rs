@@ -350,8 +350,8 @@ impl<D: Dim> Dem<D> {
         (self.steps + steps).is_multiple_of(SORT_EVERY) && self.len() >= SORT_FROM
     }
 
-    /// Takes steps outside a periodic cell.
-    fn take(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+    /// Steps without a periodic cell.
+    fn advance_in_the_open(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         // Between two steps of one call, the end of one and the start of the next share a pass.
         let mut opened = false;
         for remaining in (0..steps).rev() {
@@ -497,9 +497,10 @@ impl<D: Dim> Solver for Dem<D> {
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);
-        inside_pool(
-            || if self.cell.is_some() { self.advance_in_cell(dt, steps) } else { self.take(dt, steps) },
-        )
+        inside_pool(|| match self.cell {
+            Some(_) => self.advance_in_cell(dt, steps),
+            None => self.advance_in_the_open(dt, steps),
+        })
     }
 
     fn location(&self) -> Location<'_> {

@@ -58,8 +58,9 @@ pub struct Meeting<D: Dim> {
 }
 
 impl<D: Dim> Meeting<D> {
-    /// Energy lost over the step \[J\] in a normal dashpot of damping `c` \[N s/m\], zero where the cut of tension acts,
-    /// in a contact that pushes with `force`, of which `elastic` by its spring \[N\].
+    /// Energy lost over the step \[J\] in a normal dashpot of damping `c` \[N s/m\], in a contact that pushes with
+    /// `force`, of which `elastic` by its spring \[N\]. Where the cut of tension acts, the force is zero, and the dashpot
+    /// takes up what the spring gives back.
     ///
     /// The dashpot acts with the predicted speed `p`, but grains move by the mean `u` of the speeds at both ends of the
     /// step, which is known when it is over: it takes `c p u`. With `a` the acceleration at the middle, `u - p` is `dt/2`
@@ -70,6 +71,7 @@ impl<D: Dim> Meeting<D> {
     pub fn damped(&self, force: f64, elastic: f64, damping: f64) -> f64 {
         let (dt, approach, presence) = (self.dt, self.approach, self.presence);
         let gained = approach - self.start_approach;
+        let damping = if force == 0.0 { 0.0 } else { damping };
         let lost = (force - elastic) * approach - 2.0 * presence * damping * gained * gained;
         if presence >= 1.0 {
             return lost * dt;

@@ -41,11 +41,8 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
     fn load<const LEDGER: bool>(&self, m: &Meeting<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
         let damping = self.damping_factor * m.effective_mass.sqrt();
         let force = self.force(m.overlap, m.presence, m.approach, damping);
-        // Where the cut acts, the dashpot takes up what the spring gives back.
-        tally.normal_damping(|| {
-            let damping = if force == 0.0 { 0.0 } else { damping };
-            m.damped(force, self.stiffness * m.overlap, damping) + m.kept(self.stiffness)
-        });
+        tally
+            .normal_damping(|| m.damped(force, self.stiffness * m.overlap, damping) + m.kept(self.stiffness));
         Load::along_normal(force)
     }
 
@@ -97,7 +94,7 @@ impl<D: Dim> Frictional<D> for LinearFrictional {
 
     #[inline(always)]
     fn held<S: Linear>(&self, _: &D::Spin, spring: S) -> f64 {
-        self.slider(1.0).held(spring)
+        0.5 * self.tangential_stiffness * spring.length_squared()
     }
 }
 
@@ -138,7 +135,13 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
 
     #[inline(always)]
     fn release<const LEDGER: bool>(&self, memory: &D::Spin, tally: &mut Tally<LEDGER>) {
-        tally.tangential_damping(|| self.slider(1.0).held(*memory));
+        let held = || Frictional::<D>::held(self, memory, *memory);
+        // A dashpot lets the spring go; without one it slides back.
+        if self.damping_ratio > 0.0 {
+            tally.tangential_damping(held);
+        } else if self.friction > 0.0 {
+            tally.sliding(held);
+        }
     }
 
     fn reversed(memory: D::Spin) -> D::Spin {

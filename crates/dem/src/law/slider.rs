@@ -154,12 +154,6 @@ impl Slider {
         }
     }
 
-    /// Energy held at the end of a contact.
-    #[inline(always)]
-    pub fn held<S: Linear>(&self, spring: S) -> f64 {
-        0.5 * self.stiffness * spring.length_squared()
-    }
-
     /// Force and stored energy between steps: the spring is half a step behind, and what the next
     /// step will slide is still stored.
     ///
