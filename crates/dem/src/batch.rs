@@ -48,8 +48,10 @@ pub(crate) struct Batch<D: Dim, L: ContactLaw<D>, const LEDGER: bool> {
     addresses: [Address; BATCH],
     registers: [Register; REGISTERS],
     used: usize,
-    /// The register that was filled last, as it is now.
-    open: Register,
+    /// The register that was filled last.
+    open: usize,
+    /// Whether a register was left for another law before it was full.
+    mixed: bool,
     gathered: Gathered<D>,
     pub(crate) memories: [L::Memory; BATCH],
     /// Share of the step during which the surfaces overlap; zero when they do not meet.
@@ -87,7 +89,8 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
             addresses: [Address::default(); BATCH],
             registers: [Register::default(); REGISTERS],
             used: 0,
-            open: Register::default(),
+            open: 0,
+            mixed: false,
             gathered: Gathered {
                 arm: vectors,
                 distance_squared: numbers,
@@ -113,30 +116,30 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
     /// The next place for a contact of this law; none when the batch is full.
     #[inline(always)]
     pub(crate) fn place(&mut self, law: usize) -> Option<usize> {
-        if self.open.law != law || self.open.next == self.open.end {
+        let open = &self.registers[self.open % REGISTERS];
+        if open.law != law || open.next == open.end {
             self.open(law)?;
         }
-        self.open.next += 1;
-        Some(self.open.next - 1)
+        let open = &mut self.registers[self.open % REGISTERS];
+        open.next += 1;
+        Some(open.next - 1)
     }
 
     /// Opens a register that was left for another law, or a new one; none when all are in use.
     fn open(&mut self, law: usize) -> Option<()> {
-        if self.used > 0 {
-            self.registers[self.open.end / WIDTH - 1] = self.open;
-        }
-        let used = &self.registers[..self.used];
-        let known = used.iter().find(|register| register.law == law && register.next < register.end);
+        self.mixed |= self.used > 0 && self.registers[self.open].law != law;
+        let used = &self.registers[..if self.mixed { self.used } else { 0 }];
+        let known = used.iter().position(|register| register.law == law && register.next < register.end);
         self.open = match known {
-            Some(known) => *known,
+            Some(known) => known,
             None if self.used == REGISTERS => return None,
             None => {
                 let next = self.used * WIDTH;
+                self.registers[self.used] = Register { law, next, end: next + WIDTH };
                 self.used += 1;
-                Register { law, next, end: next + WIDTH }
+                self.used - 1
             }
         };
-        self.registers[self.open.end / WIDTH - 1] = self.open;
         Some(())
     }
 
@@ -156,7 +159,8 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
     }
 
     pub(crate) fn clear(&mut self) {
-        (self.len, self.used, self.open) = (0, 0, Register::default());
+        (self.len, self.used, self.open, self.mixed) = (0, 0, 0, false);
+        self.registers[0] = Register::default();
     }
 
     /// Gathers what is read of the pairs.
@@ -167,18 +171,18 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Batch<D, L, LEDGER> {
         for address in self.addresses.iter().take(self.len) {
             let k = address.place as usize % BATCH;
             let (first, second) = (address.first as usize, address.second as usize);
-            let (own, other) = (view.body::<L>(first), view.body::<L>(second));
             self.memories[k] = memory[address.memory as usize];
-            to.velocity[k] = own.velocity - other.velocity;
-            (to.own_radius[k], to.other_radius[k]) = (own.radius, other.radius);
-            (to.own_mass[k], to.other_mass[k]) = (own.mass, other.mass);
+            to.velocity[k] = view.velocity[first] - view.velocity[second];
+            (to.own_radius[k], to.other_radius[k]) = (view.radius[first], view.radius[second]);
+            (to.own_mass[k], to.other_mass[k]) = (view.mass[first], view.mass[second]);
             if L::TANGENTIAL || LEDGER {
-                to.start_velocity[k] = own.start_velocity - other.start_velocity;
+                to.start_velocity[k] = view.start_velocity[first] - view.start_velocity[second];
             }
             if L::TANGENTIAL {
-                (to.own_start_spin[k], to.other_start_spin[k]) = (own.start_spin, other.start_spin);
+                to.own_start_spin[k] = view.start_spin[first];
+                to.other_start_spin[k] = view.start_spin[second];
                 if view.predicts || L::TWISTING {
-                    (to.own_spin[k], to.other_spin[k]) = (own.spin, other.spin);
+                    (to.own_spin[k], to.other_spin[k]) = (view.spin[first], view.spin[second]);
                 }
             }
         }
@@ -235,7 +239,7 @@ impl<D: Dim> Gathered<D> {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     (view, law): (&View<'_, D>, &L),
     (gathered, (from, to)): (&Gathered<D>, (usize, usize)),
