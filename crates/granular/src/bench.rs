@@ -24,37 +24,22 @@ use crate::failure::Failure;
 use std::path::Path;
 
 /// A work-precision study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Precision {
     /// Restitution of a normal impact over the step, for both treatments of tension.
     Restitution,
-    /// The same for elastic grains with damping, disks and spheres.
+    /// The same for elastic disks and spheres with damping.
     Hertz,
-    /// Run-out of a column over stiffness and step, as a mean over seeds.
+    /// Run-out of a column over stiffness and step, as a mean over seeds; takes minutes.
     Column,
-    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid.
+    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid; takes seconds.
     Cells,
-    /// Decaying vortices over cells, Mach number, operator and storage: a minute.
+    /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
     TaylorGreen,
-    /// A lid-driven cavity over the same: one to two minutes.
+    /// Lid-driven cavity over the same; takes one to two minutes.
     Cavity,
-    /// The unsteady cylinder of Schaefer and Turek over the same: five to eight minutes on two cores.
+    /// Unsteady cylinder of Schaefer and Turek over the same; takes five to eight minutes on two cores.
     SchaeferTurek,
-}
-
-impl Precision {
-    /// Name, also that of its folder.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Restitution => "restitution",
-            Self::Hertz => "hertz",
-            Self::Column => "column",
-            Self::Cells => "cells",
-            Self::TaylorGreen => "taylor-green",
-            Self::Cavity => "cavity",
-            Self::SchaeferTurek => "schaefer-turek",
-        }
-    }
 }
 
 /// Runs a study.

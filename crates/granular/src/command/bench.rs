@@ -13,7 +13,7 @@ pub(super) enum Bench {
     /// Error against run time, as a table and a figure.
     Precision {
         /// Study.
-        case: Case,
+        case: Precision,
         /// Folder for the figure and the points; `bench/<case>` by default.
         #[arg(short, long, value_name = "FOLDER")]
         out: Option<PathBuf>,
@@ -25,25 +25,6 @@ pub(super) enum Bench {
         #[command(flatten)]
         flags: Speed,
     },
-}
-
-/// Studies.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Case {
-    /// Restitution of a normal impact over the step.
-    Restitution,
-    /// The same for elastic disks and spheres with damping.
-    Hertz,
-    /// Run-out of a column over stiffness and step; takes minutes.
-    Column,
-    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid; takes seconds.
-    Cells,
-    /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
-    TaylorGreen,
-    /// Lid-driven cavity over the same; takes one to two minutes.
-    Cavity,
-    /// Unsteady cylinder in a channel over the same; takes five to eight minutes on two cores.
-    SchaeferTurek,
 }
 
 /// Solvers.
@@ -87,17 +68,8 @@ impl Bench {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
         match self {
             Self::Precision { case, out } => {
-                let case = match case {
-                    Case::Restitution => Precision::Restitution,
-                    Case::Hertz => Precision::Hertz,
-                    Case::Column => Precision::Column,
-                    Case::Cells => Precision::Cells,
-                    Case::TaylorGreen => Precision::TaylorGreen,
-                    Case::Cavity => Precision::Cavity,
-                    Case::SchaeferTurek => Precision::SchaeferTurek,
-                };
                 let study = bench::precision(case)?;
-                let folder = out.unwrap_or_else(|| Path::new("bench").join(case.name()));
+                let folder = out.unwrap_or_else(|| Path::new("bench").join(study.case));
                 bench::save(&study, &folder)?;
                 let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
                 show(common, &json!(study), || format!("{study}{files}"));
