@@ -33,7 +33,17 @@ pub(super) fn study() -> Result<Study, Failure> {
     let point = |scheme: &str, resolution: f64, (seconds, found): (f64, Vec<f64>)| {
         let error = error(&found);
         let scheme = scheme.to_owned();
-        Point { scheme, resolution, dt: f64::NAN, error, band: 0.0, seeds: 1, seconds, pareto: false }
+        Point {
+            problem: String::new(),
+            scheme,
+            resolution,
+            dt: f64::NAN,
+            error,
+            band: 0.0,
+            seeds: 1,
+            seconds,
+            pareto: false,
+        }
     };
     let mut points = Vec::new();
     for resolution in RASTERS {

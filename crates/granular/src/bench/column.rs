@@ -102,6 +102,7 @@ fn ensembles(columns: &Columns) -> Result<(Vec<Point>, String), Failure> {
         let differences = run_outs(ensemble).into_iter().zip(&reference).map(|(a, b)| (a - b) / mean);
         let (error, band) = mean_and_error(&differences.collect::<Vec<_>>());
         Point {
+            problem: columns.grains.to_owned(),
             scheme: format!("{}, k_n = {stiffness:.1e} N/m", columns.grains),
             resolution,
             dt: ensemble[0].dt,

@@ -6,10 +6,13 @@ use granular_io::figure::{Axis, Chart, Series, Style};
 pub(super) fn chart(study: &Study) -> Chart {
     let title = format!("Error against run time: {}", study.case);
     let mut chart = Chart::new(title, Axis::log("wall time of a run [s]"), Axis::log(study.error));
-    let mut front: Vec<[f64; 2]> =
-        study.points.iter().filter(|point| point.pareto).map(|point| [point.seconds, point.error]).collect();
-    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    chart = chart.with(Series::new("Pareto front", front, Style::Dashed).colour(7));
+    for problem in study.problems() {
+        let best = study.points.iter().filter(|point| point.pareto && point.problem == problem);
+        let mut front: Vec<[f64; 2]> = best.map(|point| [point.seconds, point.error]).collect();
+        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let name = if problem.is_empty() { "Pareto front" } else { &format!("Pareto front, {problem}") };
+        chart = chart.with(Series::new(name, front, Style::Dashed).colour(7));
+    }
     for (colour, scheme) in study.schemes().into_iter().enumerate() {
         let points: Vec<_> = study.points.iter().filter(|point| point.scheme == scheme).collect();
         let places = points.iter().map(|point| [point.seconds, point.error]).collect::<Vec<_>>();

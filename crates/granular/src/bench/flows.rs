@@ -223,6 +223,7 @@ fn cost(run: &Run) -> f64 {
 
 fn point(run: &Run, measured: &Measured, seconds: f64) -> Point {
     Point {
+        problem: String::new(),
         scheme: run.scheme.clone(),
         resolution: run.cells as f64,
         dt: measured.dt,

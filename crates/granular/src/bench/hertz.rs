@@ -69,7 +69,7 @@ fn line<D: Dim>(
         let strike = Strike::of_glass(RESTITUTION, tension, SPEED, steps);
         let point = measure(&InDimension::<D>(strike, PhantomData), &scheme)?;
         curve.push((point.dt, point.error));
-        points.push(point);
+        points.push(Point { problem: format!("{}s", D::BALL), ..point });
     }
     orders.insert(scheme, order(&curve));
     Ok(())

@@ -79,6 +79,7 @@ pub(super) fn measure(impact: &dyn Trial, scheme: &str) -> Result<Point, Failure
     let error = root_mean_square(&errors);
     let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
     Ok(Point {
+        problem: String::new(),
         scheme: scheme.to_owned(),
         resolution: impact.resolution(),
         dt: impact.dt(),

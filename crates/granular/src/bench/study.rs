@@ -10,6 +10,8 @@ pub(super) const CONTACT: &str = "steps per contact";
 /// Error and cost at one resolution.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
+    /// What is simulated, where a study compares several; runs of one are not compared with those of another.
+    pub problem: String,
     /// Scheme or parameter that stays the same along a curve.
     pub scheme: String,
     /// How fine it is, in the unit of the study.
@@ -24,7 +26,7 @@ pub struct Point {
     pub seeds: usize,
     /// Wall time of one run \[s\].
     pub seconds: f64,
-    /// Whether no other point is both nearer and faster.
+    /// Whether no other point of the same problem is both nearer and faster.
     pub pareto: bool,
 }
 
@@ -46,36 +48,48 @@ pub struct Study {
 }
 
 impl Study {
-    /// Marks the points that no other point beats.
+    /// Marks the points that no other point of their problem beats.
     pub(super) fn mark_front(mut self) -> Self {
-        let costs: Vec<(f64, f64)> = self.points.iter().map(|point| (point.seconds, point.error)).collect();
-        for (point, &(seconds, error)) in self.points.iter_mut().zip(&costs) {
-            let beaten = |&(s, e): &(f64, f64)| s <= seconds && e <= error && (s, e) != (seconds, error);
-            point.pareto = !costs.iter().any(beaten);
-        }
+        let beats = |a: &Point, b: &Point| {
+            let costs = [a, b].map(|point| (point.seconds, point.error));
+            a.problem == b.problem && a.seconds <= b.seconds && a.error <= b.error && costs[0] != costs[1]
+        };
+        let beaten = self.points.iter().map(|point| self.points.iter().any(|other| beats(other, point)));
+        let beaten: Vec<bool> = beaten.collect();
+        self.points.iter_mut().zip(beaten).for_each(|(point, beaten)| point.pareto = !beaten);
         self
+    }
+
+    /// The problems in the order of the points.
+    pub(super) fn problems(&self) -> Vec<&str> {
+        in_order(self.points.iter().map(|point| point.problem.as_str()))
     }
 
     /// The schemes in the order of the points.
     pub(super) fn schemes(&self) -> Vec<&str> {
-        let mut schemes: Vec<&str> = Vec::new();
-        for point in &self.points {
-            if !schemes.contains(&point.scheme.as_str()) {
-                schemes.push(&point.scheme);
-            }
-        }
-        schemes
+        in_order(self.points.iter().map(|point| point.scheme.as_str()))
     }
 
     /// All points as CSV.
     pub(super) fn csv(&self) -> String {
-        let mut text = "scheme,resolution,dt [s],error,band,seeds,seconds,pareto\n".to_owned();
+        let mut text = "problem,scheme,resolution,dt [s],error,band,seeds,seconds,pareto\n".to_owned();
         for p in &self.points {
             let numbers = [p.resolution, p.dt, p.error, p.band].map(|number| number.to_string()).join(",");
-            text += &format!("{},{numbers},{},{},{}\n", p.scheme, p.seeds, p.seconds, p.pareto);
+            text += &format!("{},{},{numbers},{},{},{}\n", p.problem, p.scheme, p.seeds, p.seconds, p.pareto);
         }
         text
     }
+}
+
+/// Each name once, where it came first.
+fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut once = Vec::new();
+    for name in names {
+        if !once.contains(&name) {
+            once.push(name);
+        }
+    }
+    once
 }
 
 impl fmt::Display for Study {
@@ -87,7 +101,7 @@ impl fmt::Display for Study {
             "scheme", self.resolution, "dt [s]", "error", "band", "seeds", "wall [s]"
         )?;
         for point in &self.points {
-            let Point { scheme, resolution, dt, error, band, seeds, seconds, pareto } = point;
+            let Point { scheme, resolution, dt, error, band, seeds, seconds, pareto, .. } = point;
             let mark = if *pareto { "*" } else { "" };
             // Not every study has steps.
             let dt = if dt.is_nan() { "-".to_owned() } else { format!("{dt:.3e}") };
@@ -110,7 +124,8 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
-        let point = |seconds, error| Point {
+        let point = |problem: &str, seconds, error| Point {
+            problem: String::from(problem),
             scheme: "a".to_owned(),
             resolution: 1.0,
             dt: 1.0,
@@ -120,10 +135,11 @@ mod tests {
             seconds,
             pareto: false,
         };
-        let points = vec![point(1.0, 0.1), point(2.0, 0.2), point(3.0, 0.01)];
+        let mut points = vec![point("a", 1.0, 0.1), point("a", 2.0, 0.2), point("a", 3.0, 0.01)];
+        points.push(point("b", 4.0, 0.3));
         let study =
             Study { case: "c", error: "e", resolution: "r", points, orders: BTreeMap::new(), notes: vec![] };
         let front: Vec<bool> = study.mark_front().points.iter().map(|point| point.pareto).collect();
-        assert_eq!(front, [true, false, true]);
+        assert_eq!(front, [true, false, true, true]);
     }
 }
