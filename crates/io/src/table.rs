@@ -1,5 +1,9 @@
 //! Tables of numbers as CSV with units in the header.
 
+mod row;
+
+pub use row::csv_row;
+
 use crate::error::IoError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};

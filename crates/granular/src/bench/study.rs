@@ -74,8 +74,14 @@ impl Study {
     pub(super) fn csv(&self) -> String {
         let mut text = "problem,scheme,resolution,dt [s],error,band,seeds,seconds,pareto\n".to_owned();
         for p in &self.points {
-            let numbers = [p.resolution, p.dt, p.error, p.band].map(|number| number.to_string()).join(",");
-            text += &format!("{},{},{numbers},{},{},{}\n", p.problem, p.scheme, p.seeds, p.seconds, p.pareto);
+            let numbers = [p.resolution, p.dt, p.error, p.band, p.seeds as f64, p.seconds];
+            let texts = [p.problem.clone(), p.scheme.clone()];
+            let fields: Vec<String> = texts
+                .into_iter()
+                .chain(numbers.map(|number| number.to_string()))
+                .chain([p.pareto.to_string()])
+                .collect();
+            text += &granular_io::csv_row(fields.iter().map(String::as_str));
         }
         text
     }
@@ -126,7 +132,7 @@ mod tests {
     fn the_front_holds_what_nothing_beats() {
         let point = |problem: &str, seconds, error| Point {
             problem: String::from(problem),
-            scheme: "a".to_owned(),
+            scheme: "a, soft".to_owned(),
             resolution: 1.0,
             dt: 1.0,
             error,
@@ -139,7 +145,11 @@ mod tests {
         points.push(point("b", 4.0, 0.3));
         let study =
             Study { case: "c", error: "e", resolution: "r", points, orders: BTreeMap::new(), notes: vec![] };
-        let front: Vec<bool> = study.mark_front().points.iter().map(|point| point.pareto).collect();
+        let study = study.mark_front();
+        let csv = study.csv();
+        let columns = csv.lines().map(|line| line.replace("\"a, soft\"", "").split(',').count());
+        assert_eq!(columns.collect::<Vec<_>>(), [9; 5], "a name with a comma is one column");
+        let front: Vec<bool> = study.points.iter().map(|point| point.pareto).collect();
         assert_eq!(front, [true, false, true, true]);
     }
 }

@@ -4,7 +4,7 @@ use super::{Point, State};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::scene::{Output, Scene, Writer};
-use granular_io::write_atomically;
+use granular_io::{csv_row, write_atomically};
 use std::path::Path;
 
 /// Names and values, in the order in which they become columns.
@@ -48,14 +48,14 @@ pub(super) fn text(axes: &[&str], runs: &[(&Point, State, Measures)]) -> String 
         }
     }
     let head = ["run"].into_iter().chain(axes.iter().copied()).chain(["exit"]);
-    let mut text = line(head.chain(names.iter().copied()));
+    let mut text = csv_row(head.chain(names.iter().copied()));
     for (point, state, measures) in runs {
         let value = |name: &&str| {
             let found = measures.iter().find(|(known, _)| known == name);
             found.map_or("", |(_, value)| value.as_str())
         };
         let fields = [point.folder.as_str()].into_iter().chain(point.labels.iter().map(String::as_str));
-        text += &line(fields.chain([state.name()]).chain(names.iter().map(value)));
+        text += &csv_row(fields.chain([state.name()]).chain(names.iter().map(value)));
     }
     text
 }
@@ -63,18 +63,4 @@ pub(super) fn text(axes: &[&str], runs: &[(&Point, State, Measures)]) -> String 
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     write_atomically(path, |file| file.write_all(text.as_bytes()))?;
     Ok(())
-}
-
-fn line<'a>(fields: impl Iterator<Item = &'a str>) -> String {
-    let fields: Vec<String> = fields.map(quoted).collect();
-    fields.join(",") + "\n"
-}
-
-/// A field with commas, quotes or line breaks stands in quotes (RFC 4180).
-fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.to_owned()
-    }
 }
