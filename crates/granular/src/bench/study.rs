@@ -75,13 +75,9 @@ impl Study {
         let mut text = "problem,scheme,resolution,dt [s],error,band,seeds,seconds,pareto\n".to_owned();
         for p in &self.points {
             let numbers = [p.resolution, p.dt, p.error, p.band, p.seeds as f64, p.seconds];
-            let texts = [p.problem.clone(), p.scheme.clone()];
-            let fields: Vec<String> = texts
-                .into_iter()
-                .chain(numbers.map(|number| number.to_string()))
-                .chain([p.pareto.to_string()])
-                .collect();
-            text += &granular_io::csv_row(fields.iter().map(String::as_str));
+            let fields = [p.problem.clone(), p.scheme.clone()].into_iter();
+            let fields = fields.chain(numbers.map(|number| number.to_string()));
+            text += &granular_io::csv_row(fields.chain([p.pareto.to_string()]));
         }
         text
     }

@@ -5,8 +5,8 @@
 /// ```
 /// assert_eq!(granular_io::csv_row(["disks, soft", "0.5"]), "\"disks, soft\",0.5\n");
 /// ```
-pub fn csv_row<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
-    let fields: Vec<String> = fields.into_iter().map(quoted).collect();
+pub fn csv_row(fields: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let fields: Vec<String> = fields.into_iter().map(|field| quoted(field.as_ref())).collect();
     fields.join(",") + "\n"
 }
 
