@@ -10,7 +10,7 @@ mod region;
 mod sample;
 mod walls;
 
-pub(crate) use grains::NamedMaterials;
+pub(crate) use grains::{NamedMaterials, Whereabouts};
 pub use outputs::{all_shown, shown_on_grids};
 pub use push::{PushAction, PushRecord};
 
@@ -166,6 +166,11 @@ pub fn begin(actions: &[Action], solver: &mut dyn Solver) -> Option<PushRecord> 
         fluid::apply(action, solver);
     }
     pushed
+}
+
+/// What a check says of a scene that can be run, and of which little will come.
+pub(crate) fn warnings(scene: &Scene, model: &Model) -> Vec<String> {
+    grains::falling::warnings(scene, model.simulation.solver())
 }
 
 /// Saves the grains as they are now, as a sample for other scenes.
