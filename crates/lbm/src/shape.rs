@@ -79,6 +79,19 @@ impl<D: Dim> Shape<D> for Block<D> {
     fn bounds(&self) -> (D::Vec, D::Vec) {
         (self.low, self.high)
     }
+
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        // The last of its faces that is passed.
+        let passed = (0..D::N).map(|axis| {
+            let [from, to] = [outside, inside].map(|point| point.component(axis));
+            match from {
+                _ if from < self.low.component(axis) => (self.low.component(axis) - from) / (to - from),
+                _ if from > self.high.component(axis) => (self.high.component(axis) - from) / (to - from),
+                _ => 0.0,
+            }
+        });
+        passed.fold(f64::MIN_POSITIVE, f64::max).min(1.0)
+    }
 }
 
 /// A polygon in the plane of x and y, its corners in order around it; in space a prism without ends along z.

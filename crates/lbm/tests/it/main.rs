@@ -6,6 +6,7 @@
 mod absorbing;
 mod channel;
 mod contract;
+mod edges;
 mod lattices;
 mod limits;
 mod open;
@@ -13,6 +14,7 @@ mod pairs;
 mod probes;
 mod shapes;
 mod symmetry;
+mod translation;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
