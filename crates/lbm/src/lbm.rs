@@ -142,6 +142,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             // What enters from beyond the fluid too: boundaries act from the first step on.
             self.populations.set_entering::<L, Q>(place, f.map(T::of));
         }
+        // What open faces learned was of another flow.
+        self.beyond.open.set_seen(&vec![[0.0; 2]; self.beyond.open.seen().len()]);
+        self.beyond.open.look::<L, T, Q>(&self.populations, self.physics.force);
     }
 
     /// Sets the body force per mass \[m/s^2\], from the next step on.

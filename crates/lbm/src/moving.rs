@@ -49,6 +49,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         self.check_motions()?;
         let uncovered = self.place_obstacles(self.motions.clone());
         self.refill(&uncovered);
+        self.beyond.open.look::<L, T, Q>(&self.populations, self.physics.force);
         Ok(())
     }
 
@@ -139,7 +140,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         }
         if faces_too {
             self.beyond.copies = builder.copies();
+            let seen = self.beyond.open.seen();
             self.beyond.open = open_faces::<L, Q>(&self.setup, &self.populations.grid, &self.cover);
+            self.beyond.open.set_seen(&seen);
         }
         self.beyond.obstacles = obstacles;
     }

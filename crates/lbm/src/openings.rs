@@ -1,6 +1,6 @@
 //! From open faces of a setup to lists of cells.
 
-use crate::absorbing::{Inner, Side};
+use crate::absorbing::{Inner, Seen, Side};
 use crate::edges::{EdgeCell, OpenEdge};
 use crate::lattice::Lattice;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of};
@@ -108,6 +108,7 @@ impl<D: Dim> Lister<'_, D> {
             scheme: face.scheme()?,
             cells: cells.collect(),
             inner,
+            seen: Seen::default(),
         })
     }
 

@@ -76,8 +76,8 @@ impl<D: Dim> Face<D> {
     ///
     /// Of a wave of angular frequency `w` the share `1 / sqrt(1 + (w L / (0.25 c_s))^2)` comes back, `L` being the length of
     /// the domain across the face: what holds the level of pressure throws long waves back. A pulse of standard
-    /// deviation L/15 comes back by 4 %, from a given pressure by 98 %. In a channel, friction moves the pressure at
-    /// the face by 1 % of the drop along the channel, or by 13 % with [`Operator::EXACT_WALLS`].
+    /// deviation L/15 comes back by 4 %, from a given pressure by 98 %. In a steady flow the mean pressure at the face comes
+    /// to be the one given: what estimates of friction there miss is learned, within a few times `L / (0.25 c_s)`.
     pub const fn absorbing(pressure: f64) -> Self {
         Self::Absorbing { pressure, relaxation: 0.25 }
     }

@@ -245,6 +245,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         to.put("positions of obstacles", &motions().map(|motion| motion.position).collect::<Vec<_>>());
         to.put("velocities of obstacles", &motions().map(|motion| motion.velocity).collect::<Vec<_>>());
         to.put("spins of obstacles", &motions().map(|motion| motion.spin).collect::<Vec<_>>());
+        let seen = self.beyond.open.seen();
+        if !seen.is_empty() {
+            to.put("what absorbing faces saw", &seen);
+        }
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -260,7 +264,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;
+        let absorbing = self.beyond.open.seen().len();
+        let seen: Vec<[f64; 2]> =
+            if absorbing > 0 { from.array_of("what absorbing faces saw", absorbing)? } else { Vec::new() };
         let are_finite = [
+            ("what absorbing faces saw", seen.iter().flatten().all(|c| c.is_finite())),
             ("acceleration", acceleration.is_finite()),
             ("force and torque on obstacles", loads.iter().flatten().all(|c| c.is_finite())),
         ];
@@ -277,6 +285,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         for (body, [a, b, c, d, e, f]) in self.beyond.obstacles.iter_mut().zip(loads) {
             (body.force, body.torque) = ([a, b, c], [d, e, f]);
         }
+        self.beyond.open.set_seen(&seen);
         self.steps = steps;
         Ok(())
     }
