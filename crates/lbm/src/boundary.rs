@@ -35,16 +35,16 @@ pub(crate) enum Neighbour {
 
 /// Builds the lists of a flow.
 pub(crate) struct Builder<'a, L: Lattice<Q>, const Q: usize> {
-    setup: &'a Setup<L::Dim>,
-    domain: Domain<L::Dim>,
+    pub(crate) setup: &'a Setup<L::Dim>,
+    pub(crate) domain: Domain<L::Dim>,
     /// Displacements of each obstacle and its periodic images.
     images: Vec<Vec<<L::Dim as Dim>::Vec>>,
-    grid: &'a Grid,
+    pub(crate) grid: &'a Grid,
     cover: &'a Cover,
 }
 
 /// The cell next to another one along a direction.
-fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
+pub(crate) fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
     std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]))
 }
 
@@ -120,11 +120,13 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             };
             match face {
                 Face::Periodic => wrapped[axis] = cell[axis].rem_euclid(last),
-                Face::FreeSlip => mirror[axis] = true,
+                Face::FreeSlip | Face::NavierSlip { .. } => mirror[axis] = true,
                 Face::Velocity(..)
                 | Face::Pressure(..)
                 | Face::PressureAlong(..)
                 | Face::Absorbing { .. } => is_open = true,
+                // Its velocity is that where a link meets it: see `varying_wall`.
+                Face::WallProfile(_) => wall = Some([0.0; 3]),
                 // In a corner, the wall that moves less.
                 Face::Wall(velocity) => {
                     let velocity = velocity.padded();
@@ -159,11 +161,15 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
                 copies.push::<L, Q>(self.grid, to, from, 0.0);
             }
             Neighbour::Wall(wall) => {
+                let wall = self.varying_wall(cell, direction).unwrap_or(wall);
                 let added = -6.0 * L::WEIGHTS[direction] * dot(velocity, wall);
                 copies.push::<L, Q>(self.grid, to, bounced, added);
             }
             Neighbour::Mirror(mirror) => {
                 let from = self.mirrored(cell, direction, mirror).unwrap_or(bounced);
+                if self.slip(copies, bounced, cell, from) {
+                    return;
+                }
                 copies.push::<L, Q>(self.grid, to, from, 0.0);
             }
         }

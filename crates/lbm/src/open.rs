@@ -7,6 +7,7 @@
 //! meet, see [`crate::edges`].
 
 use crate::absorbing::{Flowing, Inner, Normal};
+use crate::body_force::Force;
 use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
@@ -110,7 +111,7 @@ impl Open {
     pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        force: Force<'_, T>,
     ) {
         for face in &self.faces {
             face.apply::<L, T, Q>(populations, force);
@@ -125,15 +126,16 @@ impl OpenFace {
     fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) {
         let mut inner = self.inner.iter();
         for &OpenCell { place, mut velocity, mut excess } in &self.cells {
+            let force = forces.at(place);
             let mut f = populations.entering::<L, Q>(place).map(T::double);
             if let Some(Some(inner)) = inner.next() {
                 let known = self.known_sum::<L, Q>(&f, force);
                 let normal = Normal { axis: self.axis, inward: f64::from(self.inward) };
-                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);
+                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, forces.at(place));
                 (excess, velocity) = inner.wave(known, excess, normal, flow_in);
             }
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod absorbing;
+mod body_forces;
 mod channel;
 mod contract;
 mod lattices;
@@ -11,8 +12,10 @@ mod limits;
 mod open;
 mod pairs;
 mod probes;
+mod scales;
 mod shapes;
 mod symmetry;
+mod walls;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =
