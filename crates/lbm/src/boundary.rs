@@ -36,16 +36,16 @@ pub(crate) enum Neighbour {
 
 /// Builds the lists of a flow.
 pub(crate) struct Builder<'a, L: Lattice<Q>, const Q: usize> {
-    setup: &'a Setup<L::Dim>,
-    domain: Domain<L::Dim>,
+    pub(crate) setup: &'a Setup<L::Dim>,
+    pub(crate) domain: Domain<L::Dim>,
     /// Displacements of each obstacle and its periodic images.
     images: Vec<Vec<<L::Dim as Dim>::Vec>>,
-    grid: &'a Grid,
+    pub(crate) grid: &'a Grid,
     cover: &'a Cover,
 }
 
 /// The cell next to another one along a direction.
-fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
+pub(crate) fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
     std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]))
 }
 
@@ -145,12 +145,14 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             };
             match face {
                 Face::Periodic => wrapped[axis] = cell[axis].rem_euclid(last),
-                Face::FreeSlip => mirror[axis] = true,
+                Face::FreeSlip | Face::NavierSlip { .. } => mirror[axis] = true,
                 Face::Velocity(..)
                 | Face::Pressure(..)
                 | Face::PressureAlong(..)
                 | Face::Absorbing { .. } => is_open = true,
-                // In a corner neither moves across the edge.
+                // Its velocity is that where a link meets it: see `varying_wall`.
+                Face::WallProfile(_) => wall = Some([0.0; 3]),
+                // In a corner neither moves across the edge: see `sliding`.
                 Face::Wall(velocity) => wall = Some(velocity.padded()),
             }
         }
@@ -192,18 +194,21 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         let cell = cell.map(|x| x as i64);
         let here = self.grid.place(cell);
         let to = Port { place: here, direction: opposite(direction) };
+        let bounced = Port { place: here, direction };
         match self.neighbour(beyond::<L, Q>(cell, direction)) {
             Neighbour::Fluid | Neighbour::Open | Neighbour::Solid(_) => {}
             Neighbour::Wrapped(_) | Neighbour::Mirror(_) => {
                 // In a mirror there may be an obstacle: that is a cut.
-                if let Some(from) = self.sent(cell, direction) {
+                if let Some(from) = self.sent(cell, direction)
+                    && !self.slip(copies, bounced, cell, from)
+                {
                     copies.push::<L, Q>(self.grid, to, from, 0.0);
                 }
             }
             Neighbour::Wall(wall) => {
-                let wall = self.sliding(cell, direction, wall);
+                let wall = self.sliding(cell, direction, self.varying_wall(cell, direction).unwrap_or(wall));
                 let added = -6.0 * L::WEIGHTS[direction] * dot(L::VELOCITIES[direction], wall);
-                copies.push::<L, Q>(self.grid, to, Port { place: here, direction }, added);
+                copies.push::<L, Q>(self.grid, to, bounced, added);
             }
         }
     }

@@ -6,6 +6,7 @@
 use crate::lattice::{Lattice, opposite};
 use crate::populations::{Grid, Layout, Populations};
 use crate::real::Real;
+use crate::wall_faces::SlipLink;
 
 /// A population: the place of a cell and a direction.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +18,12 @@ pub(crate) struct Port {
 /// Index of a population in both layouts.
 pub(crate) type Both = [u32; 2];
 
-fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+pub(crate) fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
     [Layout::Natural, Layout::Turned]
         .map(|layout| grid.entering::<L, Q>(layout, port.place, port.direction) as u32)
 }
 
-fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+pub(crate) fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
     [Layout::Natural, Layout::Turned]
         .map(|layout| grid.leaving::<L, Q>(layout, port.place, port.direction) as u32)
 }
@@ -33,11 +34,13 @@ pub(crate) struct Copies<T> {
     pub(crate) resting: Vec<(Both, Both)>,
     /// With what a moving wall adds.
     pub(crate) moving: Vec<(Both, Both, T)>,
+    /// Of walls along which the fluid slips.
+    pub(crate) slipping: Vec<SlipLink<T>>,
 }
 
 impl<T: Real> Copies<T> {
     pub(crate) fn new() -> Self {
-        Self { resting: Vec::new(), moving: Vec::new() }
+        Self { resting: Vec::new(), moving: Vec::new(), slipping: Vec::new() }
     }
 
     /// What enters at `to` is what left at `from`, plus `added`.
@@ -65,11 +68,13 @@ impl<T: Real> Copies<T> {
         for (to, from, added) in &self.moving {
             values[to[at] as usize] = values[from[at] as usize] + *added;
         }
+        self.slipping.iter().for_each(|link| link.apply(populations));
     }
 
     pub(crate) fn bytes(&self) -> usize {
         size_of::<(Both, Both)>() * self.resting.capacity()
             + size_of::<(Both, Both, T)>() * self.moving.capacity()
+            + size_of::<SlipLink<T>>() * self.slipping.capacity()
     }
 }
 

@@ -49,7 +49,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         self.check_motions()?;
         let uncovered = self.place_obstacles(self.motions.clone());
         self.refill(&uncovered);
-        self.beyond.open.look::<L, T, Q>(&self.populations, self.physics.force);
+        self.look_at_open_faces();
         Ok(())
     }
 
@@ -59,9 +59,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 let (solver, quantity) = (self.name(), "motion lent to an obstacle");
                 return Err(StepError::NotFinite { solver, quantity, id: k as u64, step: self.steps });
             }
-            let (low, high) = obstacle.shape.bounds();
-            let reach = 0.5 * (high - low).length() * motion.spin.length();
-            let speed = (motion.velocity.length() + reach) / self.setup.lattice_speed();
+            let turning = obstacle.shape.reach() * motion.spin.length();
+            let speed = (motion.velocity.length() + turning) / self.setup.lattice_speed();
             if speed > FASTEST {
                 return Err(StepError::TooStiff {
                     what: format!(

@@ -7,6 +7,7 @@
 //! meet, see [`crate::edges`].
 
 use crate::absorbing::{Flowing, Inner, Normal, Seen, Sums};
+use crate::body_force::Force;
 use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
@@ -129,7 +130,7 @@ impl Open {
     pub(crate) fn look<L: Lattice<Q>, T: Real, const Q: usize>(
         &mut self,
         populations: &Populations<T>,
-        force: [f64; 3],
+        force: Force<'_, T>,
     ) {
         for face in self.faces.iter_mut().filter(|face| face.known == Known::Wave) {
             face.seen.inwards = face.inwards::<L, T, Q>(populations, force);
@@ -139,7 +140,7 @@ impl Open {
     pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &mut self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        force: Force<'_, T>,
     ) {
         for face in &mut self.faces {
             face.apply::<L, T, Q>(populations, force);
@@ -154,14 +155,15 @@ impl OpenFace {
     fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &mut self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) {
         if self.known == Known::Wave {
-            let sums = self.absorb::<L, T, Q>(populations, force);
+            let sums = self.absorb::<L, T, Q>(populations, forces);
             self.seen.learn(&sums);
             return;
         }
         for &OpenCell { place, velocity, excess } in &self.cells {
+            let force = forces.at(place);
             let mut f = populations.entering::<L, Q>(place).map(T::double);
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
@@ -179,14 +181,15 @@ impl OpenFace {
     fn absorb<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) -> Sums {
         let (normal, mut sums) = (self.normal(), Sums::default());
         for (&OpenCell { place, velocity, excess }, inner) in self.cells.iter().zip(&self.inner) {
+            let force = forces.at(place);
             let mut f = populations.entering::<L, Q>(place).map(T::double);
             if let Some(inner) = inner {
                 let known = self.known_sum::<L, Q>(&f, force);
-                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);
+                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, forces.at(place));
                 let wave = inner.wave(known, (excess, self.seen.missed), normal, flow_in);
                 let (excess, velocity) = self.fill::<L, Q>(&mut f, wave.velocity, wave.excess, force);
                 sums.add(normal.inwards(excess, velocity), &wave, inner.share);
@@ -202,9 +205,9 @@ impl OpenFace {
     fn inwards<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) -> f64 {
-        let of = |place| Flowing::of::<L, T, Q>(populations, place, force).inwards(self.normal());
+        let of = |place| Flowing::of::<L, T, Q>(populations, place, forces.at(place)).inwards(self.normal());
         let pairs = self.cells.iter().zip(&self.inner);
         let pairs = pairs.filter_map(|(cell, inner)| Some([cell.place, inner.as_ref()?.place]));
         let (sum, count) = pairs.fold((0.0, 0), |(sum, count), [at_face, within]| {

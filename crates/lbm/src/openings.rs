@@ -185,7 +185,10 @@ impl<D: Dim> Lister<'_, D> {
         let (at, count) = (cell[axis] as i64 + way, self.setup.cells[axis] as i64);
         if !(0..count).contains(&at) {
             match &self.setup.faces[axis][usize::from(way == 1)] {
-                Face::Wall(velocity) => {
+                face @ (Face::Wall(_) | Face::WallProfile(_)) => {
+                    let to_wall = D::Vec::along(axis, 0.5 * self.setup.spacing * way as f64);
+                    let point = Domain::of(self.setup).centre(cell.map(|x| x as i64)) + to_wall;
+                    let velocity = face.wall_velocity(point).unwrap_or_default();
                     return Side::Wall(velocity.padded().map(|c| c / self.setup.lattice_speed()));
                 }
                 Face::Periodic => {}
