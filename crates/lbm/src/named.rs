@@ -183,7 +183,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     fn link_faces(&mut self) {
         let grid = &self.populations.grid;
         self.beyond.copies = Builder::<L, Q>::new(&self.setup, grid, &self.cover).copies();
+        // What faces that absorb have learned of the flow holds as before.
+        let seen = self.beyond.open.seen();
         self.beyond.open = open_faces::<L, Q>(&self.setup, grid, &self.cover);
+        self.beyond.open.set_seen(&seen);
     }
 
     /// Saves which faces were set, and their velocities.
