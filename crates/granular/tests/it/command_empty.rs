@@ -80,10 +80,10 @@ fn grains_with_nothing_below_are_told_before_the_run_and_end_it() {
     let scratch = Scratch::new("no-floor");
     fs::write(scratch.path("scene.ron"), NO_FLOOR).unwrap();
     let report = scratch.granular(&["check", "scene.ron"]).expect(0);
-    assert!(report.out.contains("nothing lies below 100 of 100 grains"), "{}", report.out);
+    assert!(report.out.contains("nothing lies below 85 of 85 grains"), "{}", report.out);
     assert!(report.out.contains("add a wall below them, such as Floor"), "{}", report.out);
     let run = scratch.granular(&["run", "scene.ron", "--quiet", "--out", "out"]).expect(4);
-    run.says(&["all 100 grains have left the walls", "add a wall below the grains"]);
+    run.says(&["all 85 grains have left the walls", "add a wall below the grains"]);
     // Free fall for 5 s would be 123 m.
     let table = fs::read_to_string(scratch.path("out/s.csv")).unwrap();
     let last: f64 = table.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();
@@ -129,7 +129,7 @@ fn circles_and_pressures_between_walls_work_from_a_scene() {
     let last: Vec<f64> =
         table.lines().last().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
     assert!((last[3] - last[0] * std::f64::consts::PI).abs() < 1e-9, "30 rpm is pi rad/s: {last:?}");
-    assert!(last[1] > -0.0125 && last[4] == 0.01, "{last:?}");
+    assert!(last[1] > -0.0125 && (last[4] - 0.01).abs() < 1e-12, "{last:?}");
 
     let press = NO_FLOOR.replace(
         "walls: [Left(material: \"g\"), Right(material: \"g\")]",
