@@ -92,10 +92,17 @@ impl Blocks {
         block * self.size..((block + 1) * self.size).min(self.items)
     }
 
+    /// Does `work`, whose loops run over these blocks, [inside the pool](inside_pool) if there is more than one: a single
+    /// block keeps to the thread of the caller, and a call costs nothing for threads that it does not use.
+    pub fn inside_pool<T: Send>(self, work: impl FnOnce() -> T + Send) -> T {
+        if self.count() > 1 { inside_pool(work) } else { work() }
+    }
+
     /// Calls `body` once per block with the parts of `work` that belong to it.
     pub fn for_each<W: Divide>(self, work: W, body: impl Fn(usize, W) + Sync) {
         if self.count() > 0 {
-            let parallel = rayon::current_num_threads() > 1;
+            // A single block asks nothing of a pool, which may not even be there yet.
+            let parallel = self.count() > 1 && rayon::current_num_threads() > 1;
             self.descend(0..self.count(), work, &body, parallel);
         }
     }
@@ -168,6 +175,20 @@ mod tests {
         assert_eq!(outer, inner);
         assert_eq!(outer.is_some(), rayon::current_num_threads() > 1);
         in_pool(1, || assert_eq!(inside_pool(index), Some(0)));
+    }
+
+    /// Waking a thread of a pool costs more than a step of a small solver.
+    #[test]
+    fn a_single_block_stays_on_the_thread_of_the_caller() {
+        let thread = || std::thread::current().id();
+        let single = Blocks::new(10, 64);
+        assert_eq!(single.inside_pool(thread), thread());
+        let mut seen = [None; 1];
+        single.for_each(PerBlock(&mut seen), |_, slot| slot.0[0] = Some(thread()));
+        assert_eq!(seen[0], Some(thread()));
+        if rayon::current_num_threads() > 1 {
+            assert_ne!(Blocks::new(100, 64).inside_pool(thread), thread());
+        }
     }
 
     #[test]

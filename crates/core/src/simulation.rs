@@ -257,7 +257,12 @@ impl Simulation {
     /// # Errors
     /// When the solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        inside_pool(|| self.graph.advance(steps))?;
+        // One solver alone knows better whether it has work for more threads than one.
+        if self.graph.nodes.len() > 1 {
+            inside_pool(|| self.graph.advance(steps))?;
+        } else {
+            self.graph.advance(steps)?;
+        }
         self.clock.steps_in_segment += steps;
         self.clock.step += steps;
         Ok(())

@@ -15,7 +15,6 @@ use crate::shaking::Shaken;
 use crate::traffic::Traffic;
 use crate::wall::{Shape, Wall};
 use crate::{lists, motion};
-use granular_core::blocks::inside_pool;
 use granular_core::solver::check_step;
 use granular_core::{
     Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
@@ -499,7 +498,7 @@ impl<D: Dim> Solver for Dem<D> {
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);
-        inside_pool(|| match self.cell {
+        self.blocks.inside_pool(|| match self.cell {
             Some(_) => self.advance_in_cell(dt, steps),
             None => self.advance_in_the_open(dt, steps),
         })

@@ -253,6 +253,11 @@ impl<T: Real> Populations<T> {
         Self { grid, layout: Layout::Natural, values, slab: blocks.size(), pair, beyond }
     }
 
+    /// The slabs of rows that a step is cut into.
+    pub(crate) fn slabs(&self, runs: &Runs) -> Blocks {
+        Blocks::new(runs.rows(), self.slab)
+    }
+
     /// Collides and moves all fluid cells. Returns whether any population at rest is not finite or larger than `bound`.
     pub(crate) fn step<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,

@@ -6,7 +6,6 @@ use crate::open::OpenScheme;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
 use crate::{OddRate, Operator, show};
-use granular_core::blocks::inside_pool;
 use granular_core::{
     Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Motion, Section, Shown, SnapshotError, Solver,
     StepError, StepLimit, StepRule, Vector,
@@ -198,7 +197,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
     }
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
-        inside_pool(|| self.advance_by(dt, steps))
+        self.populations.slabs(&self.runs).inside_pool(|| self.advance_by(dt, steps))
     }
 
     fn location(&self) -> Location<'_> {

@@ -66,8 +66,10 @@ pub struct Speed {
     pub unit: &'static str,
     /// Bytes that the solver holds for a grain or cell.
     pub bytes_per_item: usize,
+    /// What the memory moves with these threads \[bytes/s\]: for grains a triad, for cells an update in place.
+    pub bandwidth: f64,
     /// Bytes moved over those that the memory moves in the same time: for grains against a triad, an
-    /// estimate from above; for cells, each population read and written once, against an update in place.
+    /// estimate from above; for cells, each population read and written once in a pass over memory.
     pub bandwidth_share: f64,
 }
 
@@ -168,6 +170,7 @@ fn measure<D: Dim>(
             rate,
             unit: "grain-steps/s",
             bytes_per_item,
+            bandwidth,
             bandwidth_share: 2.0 * bytes_per_item as f64 * rate / bandwidth,
         });
     }
@@ -190,14 +193,16 @@ fn window<D: Dim>(dem: &mut Dem<D>, dt: f64) -> Result<f64, Failure> {
 pub fn table(speeds: &[Speed]) -> String {
     let unit = speeds.first().map_or("", |speed| speed.unit);
     let mut text = format!(
-        "{:<16} {:<44} {:>9} {:>8} {:>14} {:>7} {:>16}\n",
-        "scene", "scheme", "n", "threads", unit, "bytes", "bandwidth share"
+        "{:<16} {:<44} {:>9} {:>8} {:>14} {:>7} {:>10} {:>9}\n",
+        "scene", "scheme", "n", "threads", unit, "bytes", "share of", "GB/s"
     );
     for speed in speeds {
-        let Speed { scene, scheme, n, threads, rate, bytes_per_item, bandwidth_share, .. } = speed;
+        let Speed { scene, scheme, n, threads, rate, bytes_per_item, bandwidth, bandwidth_share, .. } = speed;
+        let bandwidth = 1e-9 * bandwidth;
         text += &format!(
-            "{scene:<16} {scheme:<44} {n:>9} {threads:>8} {rate:>14.4e} {bytes_per_item:>7} {bandwidth_share:>16.2}\n"
+            "{scene:<16} {scheme:<44} {n:>9} {threads:>8} {rate:>14.4e} {bytes_per_item:>7} {bandwidth_share:>10.2} {bandwidth:>9.1}\n"
         );
     }
-    text
+    text + "share of GB/s: bytes that must move, over what the same threads move in a plain loop (grains: a triad; cells: an update\n\
+            in place, in huge pages where the system has them); samples that fit into a cache may exceed one\n"
 }

@@ -110,6 +110,7 @@ fn measure(scene: &str, disks: &Disks, bandwidth: f64, repeats: usize) -> Result
         rate,
         unit: "sites/s",
         bytes_per_item,
+        bandwidth,
         bandwidth_share: 2.0 * bytes_per_item as f64 * rate / bandwidth,
     })
 }
