@@ -10,6 +10,7 @@ pub mod failure;
 pub mod figures;
 pub mod folder;
 mod lock;
+pub mod machine;
 pub mod model;
 mod observers;
 mod probes;
