@@ -35,6 +35,11 @@
 //!
 //! What a kernel spreads beyond the grid is not lost silently: it is shown as `mass_outside`.
 //!
+//! **A periodic cell** goes on without end: the grid sees every image of a grain and of a branch that reaches into it, so a
+//! grid over the cell holds all of its mass, also where the cell leans. Velocities are those of the laboratory,
+//! `u + L x` with the flow of the cell, so that gradients are those of the flow; what shear makes of velocities within the
+//! reach of a kernel counts as spread about the mean here as everywhere.
+//!
 //! ```
 //! use granular_core::glam::DVec2;
 //! use granular_dem::{CoarseGrid, Dem2, Grain, Material, Materials, Options, Setup};
@@ -54,6 +59,7 @@
 mod catalogue;
 mod fields;
 mod grid;
+mod images;
 mod spline;
 mod sums;
 

@@ -41,6 +41,8 @@ pub struct Contact<D: Dim> {
     pub normal_force: f64,
     /// Force on the first body \[N\].
     pub force: D::Vec,
+    /// Torque of rolling and twisting resistance on the first body \[N m\]; the second gets the opposite.
+    pub torque: D::Spin,
     /// Energy stored in the springs \[J\].
     pub energy: f64,
 }

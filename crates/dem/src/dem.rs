@@ -157,7 +157,8 @@ impl<D: Dim> Dem<D> {
         self.pairs.tangential()
     }
 
-    /// The grain of a stable identifier, as it is now. Searches: for a few grains.
+    /// The grain of a stable identifier, as it is now; in a cell that deforms its velocity is that relative to the flow of
+    /// the cell, as a cell takes it. Searches: for a few grains.
     ///
     /// # Panics
     /// When there is no such grain.
@@ -166,7 +167,7 @@ impl<D: Dim> Dem<D> {
         self.grain_at(index.expect("the identifier is that of a grain"))
     }
 
-    /// All grains with their identifiers, in the order of memory.
+    /// All grains with their identifiers, in the order of memory; velocities as [`Dem::grain`] has them.
     pub fn grains(&self) -> impl Iterator<Item = (u32, Grain<D>)> + '_ {
         (0..self.len()).map(|index| (self.grains.id[index], self.grain_at(index)))
     }
@@ -474,6 +475,7 @@ pub(crate) fn view_of<'a, D: Dim>(
     }
 }
 
+/// In a cell that deforms velocities are those relative to its flow.
 impl<D: Dim> Provides<GrainMotion<D>> for Dem<D> {
     fn view(&self) -> granular_core::Grains<'_, D> {
         let Grains { position, velocity, spin, radius, id, .. } = &self.grains;

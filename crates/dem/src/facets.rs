@@ -100,6 +100,11 @@ impl<D: Dim> Facets<D> {
         self.radii.get(part).copied()
     }
 
+    /// Corners of a box \[m\] around all parts.
+    pub fn bounds(&self) -> (D::Vec, D::Vec) {
+        self.bounds_of(&self.order)
+    }
+
     /// Whether parts are balls, each of which is a body of its own.
     pub(crate) fn are_balls(&self) -> bool {
         !self.radii.is_empty()
@@ -174,7 +179,7 @@ impl<D: Dim> Facets<D> {
 
     /// Appends the box of some parts and all boxes below it. `offset` is where the parts are in the order.
     fn grow(&mut self, parts: &mut [u32], offset: usize) {
-        let (low, high) = self.bounds(parts);
+        let (low, high) = self.bounds_of(parts);
         let place = self.nodes.len();
         let leaf = parts.len() <= LEAF;
         let count = if leaf { parts.len() as u32 } else { 0 };
@@ -194,7 +199,7 @@ impl<D: Dim> Facets<D> {
         self.nodes[place].skip = self.nodes.len() as u32;
     }
 
-    fn bounds(&self, parts: &[u32]) -> (D::Vec, D::Vec) {
+    fn bounds_of(&self, parts: &[u32]) -> (D::Vec, D::Vec) {
         let far = (0..D::N).fold(D::Vec::ZERO, |v, axis| v + D::Vec::along(axis, f64::INFINITY));
         let mut bounds = (far, -far);
         for &part in parts {

@@ -538,6 +538,7 @@ pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
         overlap: meeting.overlap,
         normal_force: load.normal,
         force: push_of::<D, L>(&load, meeting.normal),
+        torque: load.rolling,
         energy,
     }
 }

@@ -34,6 +34,7 @@
 //! ```
 
 mod batch;
+mod below;
 pub mod cell;
 mod choice;
 mod clock;
@@ -62,7 +63,9 @@ pub mod spec;
 mod state;
 mod traffic;
 pub mod wall;
+mod wall_numbers;
 
+pub use below::{Falling, Gates};
 pub use cell::{Cell, CellControl, Control, Matrix};
 pub use coarse::{CoarseFields, CoarseGrid};
 pub use contacts::{Contact, Partner};
@@ -80,7 +83,7 @@ pub use material::{
 };
 pub use moving::WallMotion;
 pub use push::{Push, PushProfile, Pushed, Strength};
-pub use servo::Servo;
+pub use servo::{PressureBetween, Servo};
 pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use shaking::Shaking;
 pub use show::Energies;

@@ -5,7 +5,7 @@
 
 use crate::material::SetupError;
 use crate::pose::{Pose, Rate, Turned};
-use crate::servo::{Drive, Servo};
+use crate::servo::{Drive, Servo, Side};
 use crate::wall::Wall;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 use std::f64::consts::TAU;
@@ -112,6 +112,8 @@ struct Mover<D: Dim> {
     motion: WallMotion<D>,
     running: Running,
     drive: Drive,
+    /// Sides of the area on which a pressure acts; none where a force is given.
+    sides: Vec<Side<D>>,
     /// Distance of the farthest grain from the axis when lists were last built \[m\].
     reach: f64,
 }
@@ -135,7 +137,13 @@ impl<D: Dim> Movers<D> {
             let Some(motion) = description.motion else { continue };
             motion.check(&description.name)?;
             let running = Running { before: 0.0, since: if description.held { f64::NAN } else { 0.0 } };
-            list.push(Mover { wall, motion, running, drive: Drive::default(), reach: 0.0 });
+            let sides = match motion {
+                WallMotion::Servo(Servo { pressure: Some(pressure), .. }) => {
+                    pressure.sides(&description.name, walls)?
+                }
+                _ => Vec::new(),
+            };
+            list.push(Mover { wall, motion, running, drive: Drive::default(), sides, reach: 0.0 });
         }
         let count = if list.is_empty() { 0 } else { walls.len() };
         let (poses, reactions) = (vec![Pose::default(); count], vec![Reaction::default(); count]);
@@ -184,7 +192,8 @@ impl<D: Dim> Movers<D> {
                 self.work += reaction.power * dt;
             }
             if mover.running.runs() {
-                mover.drive = mover.drive.other_half(dt, &mover.motion, reaction.force);
+                let loads = (reaction.force, mover.pressed(&self.poses));
+                mover.drive = mover.drive.other_half(dt, &mover.motion, loads);
             }
         }
     }
@@ -216,6 +225,26 @@ impl<D: Dim> Movers<D> {
     pub(crate) fn fastest_ever(&self) -> f64 {
         let speed = |mover: &Mover<D>| mover.motion.fastest(|_| mover.reach).max(mover.drive.fastest(0.0));
         self.list.iter().map(speed).fold(0.0, f64::max)
+    }
+
+    /// Walls that move, and where each is: displacement, velocity and angle are those between steps.
+    pub(crate) fn walls(&self) -> impl Iterator<Item = usize> {
+        self.list.iter().map(|mover| mover.wall)
+    }
+
+    /// Angle by which a turning wall has turned \[rad\]; none for others.
+    pub(crate) fn angle(&self, wall: usize, time: f64) -> Option<f64> {
+        let mover = self.list.iter().find(|mover| mover.wall == wall)?;
+        match mover.motion {
+            WallMotion::Turning { spin, .. } => Some(spin.length() * mover.running.elapsed(time)),
+            _ => None,
+        }
+    }
+
+    /// Area on which the pressure of a servo acts now \[m^2; m in the plane\]; none where a force is given.
+    pub(crate) fn pressed_area(&self, wall: usize) -> Option<f64> {
+        let mover = self.list.iter().find(|mover| mover.wall == wall && !mover.sides.is_empty())?;
+        Some(mover.area(&self.poses))
     }
 
     /// Walls under a force.
@@ -264,6 +293,18 @@ impl<D: Dim> Movers<D> {
 }
 
 impl<D: Dim> Mover<D> {
+    fn area(&self, poses: &[Pose<D>]) -> f64 {
+        self.sides.iter().map(|side| side.length(poses)).product()
+    }
+
+    /// Force of a pressure on the area that there is now \[N\].
+    fn pressed(&self, poses: &[Pose<D>]) -> f64 {
+        match self.motion {
+            WallMotion::Servo(Servo { pressure: Some(given), .. }) => given.pressure * self.area(poses),
+            _ => 0.0,
+        }
+    }
+
     /// Where the wall is and how it moves at a time \[s\].
     fn at(&self, time: f64) -> Pose<D> {
         let elapsed = self.running.elapsed(time);

@@ -73,6 +73,11 @@ impl<D: Dim> Pose<D> {
         if self.is_turned() { self.about + self.turned(shifted - self.about, -1.0) } else { shifted }
     }
 
+    /// Where a point of the frame of the wall is in the scene.
+    pub(crate) fn out_of_wall_at(&self, point: D::Vec) -> D::Vec {
+        self.about + self.out_of_wall(point - self.about) + self.shift
+    }
+
     /// A direction of the frame of the wall in that of the scene.
     #[inline(always)]
     pub(crate) fn out_of_wall(&self, direction: D::Vec) -> D::Vec {
@@ -105,6 +110,7 @@ mod tests {
         let scene = about + turn * (body - about) + shift;
         assert!((pose.within_wall(scene) - body).length() < 1e-15);
         assert!((pose.out_of_wall(body) - turn * body).length() < 1e-15);
+        assert!((pose.out_of_wall_at(body) - scene).length() < 1e-15);
         let flat = Pose::<D2> { axis: 1.0, angle: Turned::by(angle), ..Pose::default() };
         let direction = DVec2::from_angle(0.2);
         assert!((flat.out_of_wall(direction) - DVec2::from_angle(0.9)).length() < 1e-15);

@@ -10,6 +10,8 @@
 
 use crate::material::SetupError;
 use crate::moving::WallMotion;
+use crate::pose::Pose;
+use crate::wall::{Shape, Wall};
 use granular_core::{Dim, Linear};
 
 /// A wall pressed by a force.
@@ -17,14 +19,70 @@ use granular_core::{Dim, Linear};
 pub struct Servo<D: Dim> {
     /// Direction of the force on the wall; a unit vector.
     pub direction: D::Vec,
-    /// Force on the wall along the direction \[N; N/m in the plane\]: pressure times area.
+    /// Force on the wall along the direction \[N; N/m in the plane\]: pressure times an area that stays.
     pub force: f64,
+    /// A pressure on an area that changes, beside the force.
+    pub pressure: Option<PressureBetween>,
     /// Mass of the wall \[kg; kg/m in the plane\].
     pub mass: f64,
     /// Dashpot between wall and frame \[N s/m\].
     pub damping: f64,
     /// Greatest speed of the wall \[m/s\].
     pub max_speed: f64,
+}
+
+/// A pressure on the area that walls leave between them as they stand, such as that of a lid between moving sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressureBetween {
+    /// Pressure \[Pa\].
+    pub pressure: f64,
+    /// Indices of planes that face one another: the area is the distance of the first pair, in space times that of
+    /// the second.
+    pub walls: [[usize; 2]; 2],
+}
+
+/// One side of the area under a pressure: two planes and their distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side<D: Dim> {
+    walls: [usize; 2],
+    normal: D::Vec,
+    /// Distance where the planes were given \[m\].
+    given: f64,
+}
+
+impl PressureBetween {
+    /// The sides of the area.
+    ///
+    /// # Errors
+    /// When the pressure is not finite, or a pair is not one of planes that face one another.
+    pub(crate) fn sides<D: Dim>(&self, wall: &str, walls: &[Wall<D>]) -> Result<Vec<Side<D>>, SetupError> {
+        if !self.pressure.is_finite() {
+            return Err(SetupError::new(format!("pressure on wall `{wall}`"), self.pressure, "finite"));
+        }
+        let side = |pair: &[usize; 2]| {
+            let planes = pair.map(|index| match walls.get(index).map(|wall| &wall.shape) {
+                Some(Shape::Plane { point, normal }) => Some((*point, *normal)),
+                _ => None,
+            });
+            if let [Some((point, normal)), Some((other, against))] = planes {
+                let given = (other - point).dot(normal);
+                if normal.dot(against) < -1.0 + 1e-9 && given > 0.0 {
+                    return Ok(Side { walls: *pair, normal, given });
+                }
+            }
+            let what = format!("walls beside `{wall}`, between which a pressure acts");
+            Err(SetupError::new(what, pair[0] as f64, "two planes that face one another"))
+        };
+        self.walls[..D::N - 1].iter().map(side).collect()
+    }
+}
+
+impl<D: Dim> Side<D> {
+    /// Distance of the planes now \[m\]; none when they have passed each other.
+    pub(crate) fn length(&self, poses: &[Pose<D>]) -> f64 {
+        let [first, second] = self.walls.map(|wall| poses[wall].shift);
+        (self.given + (second - first).dot(self.normal)).max(0.0)
+    }
 }
 
 impl<D: Dim> Servo<D> {
@@ -94,10 +152,15 @@ impl Drive {
         Self { offset: self.offset + 0.5 * dt * self.velocity, now, ..self }
     }
 
-    /// Takes the push of the grains, and drifts the other half.
-    pub(crate) fn other_half<D: Dim>(self, dt: f64, motion: &WallMotion<D>, push: D::Vec) -> Self {
+    /// Takes the push of the grains and what a pressure adds to the force of the servo, and drifts the other half.
+    pub(crate) fn other_half<D: Dim>(
+        self,
+        dt: f64,
+        motion: &WallMotion<D>,
+        (push, pressed): (D::Vec, f64),
+    ) -> Self {
         let WallMotion::Servo(servo) = motion else { return self };
-        let force = servo.force + push.dot(servo.direction);
+        let force = servo.force + pressed + push.dot(servo.direction);
         // The dashpot acts on the mean of old and new velocity: stable for any damping.
         let drag = 0.5 * dt * servo.damping / servo.mass;
         let free = (self.velocity * (1.0 - drag) + dt * force / servo.mass) / (1.0 + drag);

@@ -76,13 +76,13 @@ impl<D: Dim> Dem<D> {
         self.pairs.visit(&View { velocity, start_velocity: velocity, ..view }, visit);
     }
 
-    /// Sum of momenta \[kg m/s\].
+    /// Sum of momenta \[kg m/s\]; in a cell that deforms, of those relative to its flow.
     pub fn momentum(&self) -> D::Vec {
         let grains = &self.grains;
         (0..self.len()).fold(D::Vec::ZERO, |sum, i| sum + grains.velocity[i] * grains.mass[i])
     }
 
-    /// Sum of angular momenta about the origin \[kg m^2/s\].
+    /// Sum of angular momenta about the origin \[kg m^2/s\]; in a cell that deforms, relative to its flow.
     pub fn angular_momentum(&self) -> D::Spin {
         let grains = &self.grains;
         (0..self.len()).fold(D::Spin::ZERO, |sum, i| {
@@ -113,14 +113,17 @@ impl<D: Dim> Dem<D> {
     }
 
     /// Farthest point of the main mass along an axis \[m\]: the front of a flow along x, its
-    /// height along the upward axis.
+    /// height along the upward axis. Not a number without grains.
     pub fn reach(&self, axis: usize) -> f64 {
         self.reach_of(&self.main_mass(), axis)
     }
 
-    /// Farthest point of some grains along an axis \[m\].
+    /// Farthest point of some grains along an axis \[m\]; not a number when there are none.
     fn reach_of(&self, main: &[bool], axis: usize) -> f64 {
         let grains = &self.grains;
+        if main.is_empty() {
+            return f64::NAN;
+        }
         self.blocks.largest(|i| {
             if main[i] { grains.position[i].component(axis) + grains.radius[i] } else { f64::NEG_INFINITY }
         })
@@ -196,10 +199,10 @@ const NUMBERS: &[(&str, &str, &str)] = &[
     ("front", "m", "farthest point of the main mass along x"),
     ("height", "m", "highest point of the main mass"),
     ("potential_energy", "J", "energy in the field of gravity, zero at the origin"),
-    ("kinetic_energy", "J", "energy of motion, without rotation"),
-    ("kinetic_energy_x", "J", "energy of motion along x"),
-    ("kinetic_energy_y", "J", "energy of motion along y"),
-    ("kinetic_energy_z", "J", "energy of motion along z"),
+    ("kinetic_energy", "J", "energy of motion, without rotation; in a cell relative to its flow"),
+    ("kinetic_energy_x", "J", "energy of motion along x; in a cell relative to its flow"),
+    ("kinetic_energy_y", "J", "energy of motion along y; in a cell relative to its flow"),
+    ("kinetic_energy_z", "J", "energy of motion along z; in a cell relative to its flow"),
     ("rotational_energy", "J", "energy of rotation"),
     ("contact_energy", "J", "energy in the springs of contacts"),
     ("loss_sliding", "J", "energy lost by sliding between grains"),
@@ -220,7 +223,7 @@ const WALL_WORK: (&str, &str, &str) =
 
 const FIELDS: &[(&str, &str, &str)] = &[
     ("radius", "m", "radius"),
-    ("velocity", "m/s", "velocity"),
+    ("velocity", "m/s", "velocity; in a cell that deforms its flow is part of it"),
     ("speed", "m/s", "magnitude of the velocity"),
     ("spin", "rad/s", "angular velocity"),
     ("id", "1", "stable identifier"),
@@ -257,6 +260,7 @@ impl<D: Dim> Dem<D> {
         if !self.movers.is_empty() {
             list.push(shown(ShownAs::Number)(&WALL_WORK));
         }
+        list.extend(self.wall_catalogue());
         list.extend(self.traffic_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(self.cell_catalogue());
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
@@ -267,6 +271,7 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn show_all(&self, sink: &mut dyn FieldSink) {
         self.show_numbers(sink);
         self.show_wall_forces(sink);
+        self.show_wall_numbers(sink);
         for ((name, unit, _), value) in
             self.traffic_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
         {
@@ -344,15 +349,18 @@ impl<D: Dim> Dem<D> {
 
     fn show_fields(&self, sink: &mut dyn FieldSink) {
         let grains = &self.grains;
+        let moving = sink.wants("velocity") || sink.wants("speed");
+        let laboratory = if moving { self.laboratory_velocities() } else { None };
+        let velocities = laboratory.as_deref().unwrap_or(&grains.velocity);
         for &(name, unit, _) in FIELDS {
             if !sink.wants(name) {
                 continue;
             }
             match name {
                 "radius" => sink.field(name, unit, FieldRef::Scalar(&grains.radius)),
-                "velocity" => sink.field(name, unit, D::vector_field(&grains.velocity)),
+                "velocity" => sink.field(name, unit, D::vector_field(velocities)),
                 "speed" => {
-                    let speed: Vec<f64> = grains.velocity.iter().map(|v| v.length()).collect();
+                    let speed: Vec<f64> = velocities.iter().map(|v| v.length()).collect();
                     sink.field(name, unit, FieldRef::Scalar(&speed));
                 }
                 "spin" if self.turns() => sink.field(name, unit, D::spin_field(&grains.spin)),

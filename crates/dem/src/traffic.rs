@@ -138,6 +138,20 @@ impl<D: Dim> Traffic<D> {
         self.sources.is_empty() && self.outlets.is_empty()
     }
 
+    /// Whether an inlet has grains left, now or when it is started.
+    pub(crate) fn brings_grains(&self) -> bool {
+        self.sources.iter().any(|source| source.tried < source.inlet.number)
+    }
+
+    /// Inlets and outlets.
+    pub(crate) fn doors(&self) -> usize {
+        self.sources.len() + self.outlets.len()
+    }
+
+    pub(crate) fn has_outlets(&self) -> bool {
+        !self.outlets.is_empty()
+    }
+
     pub(crate) fn inlets(&self) -> impl Iterator<Item = &Inlet<D>> {
         self.sources.iter().map(|source| &source.inlet)
     }
@@ -248,7 +262,7 @@ impl<D: Dim> Dem<D> {
     /// A periodic cell holds as many grains as it began with.
     fn refuse_cell(&self) -> Result<(), SetupError> {
         match self.cell() {
-            Some(_) => Err(SetupError::new("periodic cells where grains come and go", 1.0, "none")),
+            Some(_) => Err(SetupError::new("number of inlets and outlets beside a periodic cell", 1.0, "0")),
             None => Ok(()),
         }
     }

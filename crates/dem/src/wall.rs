@@ -42,6 +42,13 @@ pub enum Shape<D: Dim> {
         /// Radius \[m\].
         radius: f64,
     },
+    /// A circle, touched from inside and outside: a drum in the plane; in space the shell of a sphere.
+    Circle {
+        /// Centre \[m\].
+        centre: D::Vec,
+        /// Radius \[m\].
+        radius: f64,
+    },
     /// A surface of many parts, touched from both sides: a chain of segments, a mesh of triangles, or
     /// grains that are held.
     Facets(Arc<Facets<D>>),
@@ -49,7 +56,8 @@ pub enum Shape<D: Dim> {
 
 impl<D: Dim> Shape<D> {
     /// Distance of a point from the surface \[m\] and the unit normal from the surface to the
-    /// point. Inside a block the distance is zero and there is no direction; nor is there one on the axis of a tube.
+    /// point. Inside a block the distance is zero and there is no direction; nor is there one on the axis of a tube or in
+    /// the centre of a circle.
     #[inline]
     pub fn distance(&self, point: D::Vec) -> (f64, D::Vec) {
         let nearest = match *self {
@@ -61,6 +69,14 @@ impl<D: Dim> Shape<D> {
                 from + along * share.clamp(0.0, 1.0)
             }
             Self::Block { low, high } => point.max(low).min(high),
+            Self::Circle { centre, radius } => {
+                let arm = point - centre;
+                let reach = arm.length();
+                if reach == 0.0 {
+                    return (radius, D::Vec::ZERO);
+                }
+                centre + arm * (radius / reach)
+            }
             Self::Tube { from, to, radius } => {
                 let along = to - from;
                 let share = (point - from).dot(along) / along.length_squared();
@@ -75,6 +91,37 @@ impl<D: Dim> Shape<D> {
         let arm = point - nearest;
         let distance = arm.length();
         if distance > 0.0 { (distance, arm * (1.0 / distance)) } else { (0.0, D::Vec::ZERO) }
+    }
+}
+
+impl<D: Dim> Shape<D> {
+    /// Corners of a box \[m\] around the shape where it was given; none for a plane, which has no end.
+    pub fn bounds(&self) -> Option<(D::Vec, D::Vec)> {
+        let wider = |reach: f64| (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, reach));
+        match *self {
+            Self::Plane { .. } => None,
+            Self::Segment { from, to } => Some((from.min(to), from.max(to))),
+            Self::Block { low, high } => Some((low, high)),
+            Self::Tube { from, to, radius } => {
+                // Across its axis a tube reaches as far as the axis is not along.
+                let axis = (to - from) * (1.0 / (to - from).length());
+                let across =
+                    |k: usize| D::Vec::along(k, radius * (1.0 - axis.component(k).powi(2)).max(0.0).sqrt());
+                let reach = (0..D::N).fold(D::Vec::ZERO, |sum, k| sum + across(k));
+                Some((from.min(to) - reach, from.max(to) + reach))
+            }
+            Self::Circle { centre, radius } => Some((centre - wider(radius), centre + wider(radius))),
+            Self::Facets(ref facets) => Some(facets.bounds()),
+        }
+    }
+
+    /// The point \[m\] by which its place is told, where it was given: that of a plane, else the middle of its bounds.
+    pub fn reference(&self) -> D::Vec {
+        match (self, self.bounds()) {
+            (Self::Plane { point, .. }, _) => *point,
+            (_, Some((low, high))) => (low + high) * 0.5,
+            (_, None) => D::Vec::ZERO,
+        }
     }
 }
 
@@ -162,6 +209,18 @@ impl<D: Dim> Wall<D> {
         Ok(Self::of(name, Shape::Tube { from, to, radius }, material))
     }
 
+    /// A circle about a centre \[m\] with a radius \[m\], touched from inside and outside; in space the shell of a sphere.
+    ///
+    /// # Errors
+    /// When the centre is not finite or the radius not positive.
+    pub fn circle(name: &str, centre: D::Vec, radius: f64, material: MaterialId) -> Result<Self, SetupError> {
+        if !(radius.is_finite() && radius > 0.0 && centre.is_finite()) {
+            let what = format!("radius of wall `{name}`");
+            return Err(SetupError::new(what, radius, "positive and finite, about a finite centre"));
+        }
+        Ok(Self::of(name, Shape::Circle { centre, radius }, material))
+    }
+
     /// A chain of segments through some points \[m\], touched from both sides and at its ends; `closed` joins the
     /// last point to the first.
     ///
@@ -237,6 +296,33 @@ mod tests {
         assert_eq!(plane.shape.distance(DVec2::new(3.0, -0.5)), (-0.5, DVec2::Y));
         assert!(Wall::<D2>::plane("p", DVec2::ZERO, DVec2::ZERO, material).is_err());
         assert!(Wall::<D2>::block("b", DVec2::ONE, DVec2::ZERO, material).is_err());
+    }
+
+    #[test]
+    fn a_circle_is_touched_inside_and_outside() {
+        let drum = Wall::<D2>::circle("drum", DVec2::new(1.0, 2.0), 3.0, MaterialId(0)).unwrap().shape;
+        assert_eq!(drum.distance(DVec2::new(3.5, 2.0)), (0.5, -DVec2::X));
+        assert_eq!(drum.distance(DVec2::new(1.0, 6.0)), (1.0, DVec2::Y));
+        assert_eq!(drum.distance(DVec2::new(1.0, 2.0)), (3.0, DVec2::ZERO));
+        assert_eq!(drum.bounds(), Some((DVec2::new(-2.0, -1.0), DVec2::new(4.0, 5.0))));
+        let shell = Wall::<D3>::circle("s", DVec3::ZERO, 1.0, MaterialId(0)).unwrap().shape;
+        assert_eq!(shell.distance(DVec3::new(0.0, 0.0, -0.75)), (0.25, DVec3::Z));
+        assert!(Wall::<D2>::circle("s", DVec2::ZERO, 0.0, MaterialId(0)).is_err());
+        assert!(Wall::<D2>::circle("s", DVec2::NAN, 1.0, MaterialId(0)).is_err());
+    }
+
+    #[test]
+    fn bounds_hold_the_whole_shape() {
+        let tube = Wall::<D3>::tube("t", DVec3::ZERO, DVec3::X * 4.0, 2.0, MaterialId(0)).unwrap().shape;
+        assert_eq!(tube.bounds(), Some((DVec3::new(0.0, -2.0, -2.0), DVec3::new(4.0, 2.0, 2.0))));
+        assert_eq!(tube.reference(), DVec3::X * 2.0);
+        let chain = [DVec2::new(1.0, 5.0), DVec2::new(-1.0, 0.0), DVec2::new(0.0, 2.0)];
+        let chain = Wall::<D2>::chain("c", &chain, false, MaterialId(0)).unwrap().shape;
+        assert_eq!(chain.bounds(), Some((DVec2::new(-1.0, 0.0), DVec2::new(1.0, 5.0))));
+        let held = Wall::<D2>::held_grains("h", &[(DVec2::ONE, 0.5)], MaterialId(0)).unwrap().shape;
+        assert_eq!(held.bounds(), Some((DVec2::splat(0.5), DVec2::splat(1.5))));
+        let plane = Wall::<D2>::plane("p", DVec2::ONE, DVec2::Y, MaterialId(0)).unwrap().shape;
+        assert_eq!((plane.bounds(), plane.reference()), (None, DVec2::ONE));
     }
 
     #[test]

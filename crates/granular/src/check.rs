@@ -33,6 +33,8 @@ pub struct Report {
     pub memory: Memory,
     /// Longest run time with the present number of threads \[s\], from a measured burst of steps.
     pub estimated_seconds: f64,
+    /// What is no reason to refuse the run, but makes little of it.
+    pub warnings: Vec<String>,
     /// Reasons to refuse the run.
     pub problems: Vec<String>,
 }
@@ -122,6 +124,7 @@ pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
     let pushes = pushes(&scene, &model);
+    let warnings = model::warnings(&scene, &model);
     let estimated_seconds =
         if problems.is_empty() { count * seconds_per_step(&mut model, steps[0], probe) } else { f64::NAN };
     Ok(Report {
@@ -133,6 +136,7 @@ pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure
         pushes,
         memory,
         estimated_seconds,
+        warnings,
         problems,
     })
 }
@@ -198,6 +202,7 @@ impl Report {
             "bytes_per_item": self.memory.bytes_per_item,
             "estimated_seconds": self.estimated_seconds,
             "left_out": self.memory.left_out,
+            "warnings": self.warnings,
             "problems": self.problems,
         })
     }
@@ -254,6 +259,12 @@ impl fmt::Display for Report {
         writeln!(f, "\nleft out")?;
         for left_out in &self.memory.left_out {
             writeln!(f, "  {left_out}")?;
+        }
+        if !self.warnings.is_empty() {
+            writeln!(f, "\nwarnings")?;
+            for warning in &self.warnings {
+                writeln!(f, "  {warning}")?;
+            }
         }
         // What the problems are, the failure says.
         let verdict = if self.problems.is_empty() { "the scene can be run" } else { "the scene is refused" };

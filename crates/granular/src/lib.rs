@@ -9,6 +9,7 @@ pub mod check;
 pub mod failure;
 pub mod figures;
 pub mod folder;
+mod json;
 mod lock;
 pub mod machine;
 pub mod model;

@@ -11,7 +11,7 @@ mod sample;
 mod walls;
 
 pub(crate) use boundaries::crowded_inlets;
-pub(crate) use grains::NamedMaterials;
+pub(crate) use grains::{NamedMaterials, Whereabouts};
 pub use outputs::{all_shown, shown_on_grids};
 pub use push::{PushAction, PushRecord};
 
@@ -167,6 +167,11 @@ pub fn begin(actions: &[Action], solver: &mut dyn Solver) -> Option<PushRecord> 
         fluid::apply(action, solver);
     }
     pushed
+}
+
+/// What a check says of a scene that can be run, and of which little will come.
+pub(crate) fn warnings(scene: &Scene, model: &Model) -> Vec<String> {
+    grains::falling::warnings(scene, model.simulation.solver())
 }
 
 /// Saves the grains as they are now, as a sample for other scenes.

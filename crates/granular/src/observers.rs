@@ -11,7 +11,7 @@ pub(crate) use profile::Line;
 pub(crate) use source::Grid;
 
 use crate::failure::Failure;
-use crate::model;
+use crate::model::{self, Whereabouts};
 use crate::probes;
 use crate::scene::{EverySpec, Output, Writer};
 use crate::voronoi;
@@ -23,8 +23,8 @@ use granular_io::{Collection, write_fields, write_links_vtp};
 use series::Series;
 use source::Source;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 /// Makes the observer of an output. On a fresh start its file is created; a resumed run reopens
@@ -293,6 +293,34 @@ impl Observer for Packed {
             return Ok(Flow::Stop);
         }
         Ok(Flow::Continue)
+    }
+}
+
+/// Ends a run whose grains have all left and fall for ever.
+pub(crate) struct Gone {
+    region: Whereabouts,
+    reason: Arc<OnceLock<String>>,
+}
+
+/// Steps between looks.
+const GONE_STEPS: u64 = 1000;
+
+impl Gone {
+    /// Watches from now on; tells the reason when it ends the run.
+    pub(crate) fn scheduled(region: Whereabouts, reason: Arc<OnceLock<String>>) -> Scheduled {
+        Scheduled::new("grains gone", Every::Steps(GONE_STEPS), Box::new(Self { region, reason }))
+    }
+}
+
+impl Observer for Gone {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        match self.region.why_left(simulation.solver()) {
+            Some(reason) => {
+                self.reason.get_or_init(|| reason);
+                Ok(Flow::Stop)
+            }
+            None => Ok(Flow::Continue),
+        }
     }
 }
 

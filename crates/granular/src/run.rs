@@ -3,8 +3,8 @@
 use crate::check;
 use crate::failure::Failure;
 use crate::folder::{PROGRAM, RunFolder, provenance};
-use crate::model::{self, Model, PushRecord};
-use crate::observers::{self, END_OF_STAGE, Packed, Rest, SnapshotTimer, Steady};
+use crate::model::{self, Model, PushRecord, Whereabouts};
+use crate::observers::{self, END_OF_STAGE, Gone, Packed, Rest, SnapshotTimer, Steady};
 use crate::progress;
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
@@ -14,8 +14,8 @@ use granular_io::{SnapshotStore, hash_hex, state_hash};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Raised by a signal; holds its number.
@@ -63,10 +63,10 @@ pub struct StageRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
     /// Front of the main mass of grains at its start \[m\]; not a number without grains.
-    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::json::number")]
     pub front: f64,
     /// Height of the main mass of grains at its start \[m\]; not a number without grains.
-    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::json::number")]
     pub height: f64,
     /// What pushes at its start did; absent without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -100,6 +100,9 @@ struct Session<'a> {
     quiet: bool,
     begun: Instant,
     first_step: u64,
+    /// Where walls and grains were at the start, and why the run ended when all grains had left.
+    region: Option<Whereabouts>,
+    gone: Arc<OnceLock<String>>,
     /// State of the observer that ends a stage, when a resumed run was within a stage that waits for it.
     watcher: Option<Section>,
 }
@@ -194,6 +197,8 @@ impl<'a> Session<'a> {
             outputs: outputs.collect::<Result<_, _>>()?,
             store: folder.snapshots(),
             first_step: 0,
+            region: Whereabouts::of(model.simulation.solver()),
+            gone: Arc::default(),
             watcher: None,
             begun: Instant::now(),
             records: Vec::new(),
@@ -282,6 +287,11 @@ impl<'a> Session<'a> {
                         _ => "at rest",
                     };
                 }
+                Ending::Stopped if self.gone.get().is_some() => {
+                    self.save_with(index, &extra)?;
+                    finish_all(&mut extra, &self.model.simulation)?;
+                    return Err(self.all_gone());
+                }
                 Ending::Stopped => {
                     self.save_with(index, &extra)?;
                     // The interval counts from the end of the save: a slow disk must not make
@@ -346,6 +356,10 @@ impl<'a> Session<'a> {
             }
             extra.push(watcher);
         }
+        if let Some(region) = self.region.filter(|region| region.may_be_left(self.model.simulation.solver()))
+        {
+            extra.push(Gone::scheduled(region, self.gone.clone()));
+        }
         if !self.quiet {
             let name =
                 format!("{} ({}/{})", self.scene.stages[index].name, index + 1, self.scene.stages.len());
@@ -384,6 +398,14 @@ impl<'a> Session<'a> {
             }
             other => other,
         }
+    }
+
+    /// What to say when there is nothing left to see.
+    fn all_gone(&self) -> Failure {
+        let reason = self.gone.get().cloned().unwrap_or_default();
+        let folder = self.folder.path().display();
+        let hint = format!("add a wall below the grains, such as Floor; what was seen so far is in {folder}");
+        Failure::Stopped { reason, hint }
     }
 
     fn interrupted(&self) -> Failure {

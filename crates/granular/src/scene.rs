@@ -332,6 +332,23 @@ pub enum WallSpec {
         #[serde(default)]
         moves: Option<MotionSpec>,
     },
+    /// A circle with grains on both sides, such as a drum in the plane; in space the shell of a sphere.
+    Circle {
+        /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
+        name: String,
+        /// Centre.
+        centre: Vec<Length>,
+        /// Radius.
+        radius: Length,
+        /// Name of the material.
+        material: String,
+        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        #[serde(default)]
+        opens: Option<String>,
+        /// How it moves; at rest by default.
+        #[serde(default)]
+        moves: Option<MotionSpec>,
+    },
     /// Segments from point to point, with grains on both sides; one wall, whose joints are not felt.
     Chain {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.

@@ -11,8 +11,13 @@
 //! with `v`, `grad` and `div` along the face and `a` the acceleration by the body force and by friction along the face. So
 //! `I` at the face is that of the cell within, less what the right side adds on the way; the terms along the face are
 //! those that \[YooIm2007\] found to matter, and taken by half. A small share is taken from the state at the pressure to which the face
-//! settles. What travels outwards follows from the populations that arrive from within. The state of the face is
-//! that of the cells: nothing more is stored.
+//! settles. What travels outwards follows from the populations that arrive from within.
+//!
+//! Since that share is small, what the estimate of the right side misses moves the level of pressure many times: by
+//! `1 / (2 share)` of the error per cell, and populations at open faces have errors of up to a tenth of the gradient of
+//! pressure there. So each face learns what is missed, in the mean over its cells: `dI/dt + (c_s + w) dI/dn` over the right side, as
+//! the cell at the face and that within show it. Sound satisfies the equation and teaches nothing; in a steady flow the mean
+//! pressure at the face comes to be the one given. These two numbers per face are part of its state.
 
 use crate::lattice::Lattice;
 use crate::open::moments;
@@ -41,6 +46,66 @@ impl Flowing {
             acceleration: force.map(|component| component / density),
         }
     }
+
+    /// What travels inwards.
+    pub(crate) fn inwards(&self, normal: Normal) -> f64 {
+        normal.inwards(self.density - 1.0, self.velocity)
+    }
+}
+
+/// What a face knows of the flow so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Seen {
+    /// What the estimate of the right side misses, mean over the face, per step.
+    pub(crate) missed: f64,
+    /// What travelled inwards after the last step, mean over the face and the cells within.
+    pub(crate) inwards: f64,
+}
+
+/// Sums over the cells of a face in one step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sums {
+    inwards: f64,
+    held: f64,
+    share: f64,
+    count: u32,
+}
+
+impl Sums {
+    /// Adds a cell: what travels inwards at the face, and what [`Inner::wave`] found.
+    pub(crate) fn add(&mut self, at_face: f64, wave: &Wave, share: f64) {
+        self.inwards += 0.5 * (at_face + wave.within);
+        self.held += wave.held;
+        self.share += share;
+        self.count += 1;
+    }
+
+    /// Means over the cells: what travels inwards, what the pressure given adds to it per step, and its share.
+    fn means(&self) -> [f64; 3] {
+        [self.inwards, self.held, self.share].map(|sum| sum / f64::from(self.count.max(1)))
+    }
+}
+
+impl Seen {
+    /// Learns from a step, at half the rate at which the level of pressure settles between a face and a wall.
+    pub(crate) fn learn(&mut self, sums: &Sums) {
+        let [inwards, held, share] = sums.means();
+        self.missed += share * sound() * (inwards - self.inwards - held);
+        self.inwards = inwards;
+    }
+}
+
+/// What a face takes from the cell within.
+pub(crate) struct Wave {
+    /// Density at the face over that at rest, minus one.
+    pub(crate) excess: f64,
+    /// Velocity of the cell within.
+    pub(crate) velocity: [f64; 3],
+    /// What travels inwards there.
+    pub(crate) within: f64,
+    /// What the pressure given adds to what travels inwards per step, and the share of the terms along the face that is
+    /// left out.
+    pub(crate) held: f64,
 }
 
 /// What lies beside a cell, along a face.
@@ -74,6 +139,13 @@ pub(crate) struct Normal {
     pub(crate) inward: f64,
 }
 
+impl Normal {
+    /// What travels inwards, from density excess and velocity.
+    pub(crate) fn inwards(self, excess: f64, velocity: [f64; 3]) -> f64 {
+        self.inward * velocity[self.axis] + sound() * logarithm_of_ratio(1.0 + excess, 1.0)
+    }
+}
+
 /// Share of the terms along the face: in full, they let a sudden stream settle more slowly; without, a round pulse leaves
 /// half as much again.
 const ALONG: f64 = 0.5;
@@ -93,11 +165,11 @@ impl Inner {
         size_of::<Self>() + self.sides.capacity() * size_of::<(usize, [Side; 2])>()
     }
 
-    /// What is added per step to what travels inwards.
-    fn source(&self, within: &Flowing, normal: Normal, flow_in: impl Fn(usize) -> Flowing) -> f64 {
+    /// What is added per step to what travels inwards: by forces, and by the terms along the face in full.
+    fn sources(&self, within: &Flowing, normal: Normal, flow_in: impl Fn(usize) -> Flowing) -> [f64; 2] {
         let inwards = |velocity: [f64; 3]| normal.inward * velocity[normal.axis];
         let w = inwards(within.velocity);
-        let mut source = inwards(within.acceleration);
+        let (mut source, mut along) = (inwards(within.acceleration), 0.0);
         for &(axis, sides) in &self.sides {
             let v = within.velocity[axis];
             // Of each side: velocity inwards, velocity along the face, and what travels inwards over that within.
@@ -122,35 +194,43 @@ impl Inner {
             };
             source += self.viscosity * second;
             let width = if sides.iter().any(|side| matches!(side, Side::Later)) { 1.0 } else { 2.0 };
-            source -= ALONG / width * (v * (high[2] - low[2]) + sound() * (high[1] - low[1]));
+            along -= (v * (high[2] - low[2]) + sound() * (high[1] - low[1])) / width;
         }
-        source
+        [source, along]
     }
 
-    /// Density excess and velocity of the cell at the face, from `known`, density times one less the velocity inwards,
-    /// and the density excess given.
+    /// State of the cell at the face, from `known`, density times one less the velocity inwards, the density excess
+    /// given and what the estimate of the right side misses.
     pub(crate) fn wave(
         &self,
         known: f64,
-        excess: f64,
+        (excess, missed): (f64, f64),
         normal: Normal,
         flow_in: impl Fn(usize) -> Flowing,
-    ) -> (f64, [f64; 3]) {
+    ) -> Wave {
         let within = flow_in(self.place);
         let w = normal.inward * within.velocity[normal.axis];
-        let carried = w - self.source(&within, normal, flow_in) / (sound() + w);
+        let [source, along] = self.sources(&within, normal, flow_in);
+        let carried = w - (source + ALONG * along + missed) / (sound() + w);
         // At the pressure given, what travels inwards is what travels outwards, plus twice the sound times the
         // logarithm of density: of that a share is taken.
         let rest = 1.0 - self.share;
         let stiffened = sound() * (1.0 + self.share) / rest;
         let given = logarithm_of_ratio(1.0 + excess, within.density);
-        let wave = carried + 2.0 * self.share / rest * sound() * given;
+        let pull = 2.0 * self.share / rest * sound();
+        let wave = carried + pull * given;
         // 1 - known / density + stiffened * logarithm_of_ratio(density, within) = wave: one root is positive.
         let square = 1.0 - wave + 2.0 * stiffened;
         let linear = (1.0 - wave - 2.0 * stiffened) * within.density - known;
         let constant = known * within.density;
         let root = (linear * linear + 4.0 * square * constant).sqrt();
         let density = (root - linear) / (2.0 * square);
-        (density - 1.0, within.velocity)
+        Wave {
+            excess: density - 1.0,
+            velocity: within.velocity,
+            within: within.inwards(normal),
+            held: (sound() + w) * pull * (given - logarithm_of_ratio(density, within.density))
+                + (1.0 - ALONG) * along,
+        }
     }
 }

@@ -8,6 +8,7 @@ use crate::openings::open_faces;
 use crate::populations::Grid;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
+use crate::shape::Shape;
 use granular_core::{Dim, Vector};
 
 /// What lies beyond the fluid.
@@ -35,17 +36,41 @@ pub(crate) enum Neighbour {
 
 /// Builds the lists of a flow.
 pub(crate) struct Builder<'a, L: Lattice<Q>, const Q: usize> {
-    setup: &'a Setup<L::Dim>,
-    domain: Domain<L::Dim>,
+    pub(crate) setup: &'a Setup<L::Dim>,
+    pub(crate) domain: Domain<L::Dim>,
     /// Displacements of each obstacle and its periodic images.
     images: Vec<Vec<<L::Dim as Dim>::Vec>>,
-    grid: &'a Grid,
+    pub(crate) grid: &'a Grid,
     cover: &'a Cover,
 }
 
 /// The cell next to another one along a direction.
-fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
+pub(crate) fn beyond<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize) -> [i64; 3] {
     std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]))
+}
+
+/// A cell seen along a link.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen {
+    pub(crate) cell: [i64; 3],
+    /// Axes along which it is a mirror image that is seen.
+    pub(crate) mirror: [bool; 3],
+}
+
+/// The cell of which the one next to a cell along a direction is the mirror image.
+fn reflected<L: Lattice<Q>, const Q: usize>(cell: [i64; 3], direction: usize, mirror: [bool; 3]) -> [i64; 3] {
+    let next = beyond::<L, Q>(cell, direction);
+    std::array::from_fn(|axis| if mirror[axis] { cell[axis] } else { next[axis] })
+}
+
+/// The direction that is seen in a mirror.
+pub(crate) fn mirrored<L: Lattice<Q>, const Q: usize>(direction: usize, mirror: [bool; 3]) -> usize {
+    if mirror == [false; 3] {
+        return direction;
+    }
+    let velocity = L::VELOCITIES[direction];
+    let seen = std::array::from_fn(|axis| if mirror[axis] { -velocity[axis] } else { velocity[axis] });
+    L::VELOCITIES.iter().position(|c| *c == seen).expect("lattices have all mirror images of a velocity")
 }
 
 impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
@@ -120,17 +145,15 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
             };
             match face {
                 Face::Periodic => wrapped[axis] = cell[axis].rem_euclid(last),
-                Face::FreeSlip => mirror[axis] = true,
+                Face::FreeSlip | Face::NavierSlip { .. } => mirror[axis] = true,
                 Face::Velocity(..)
                 | Face::Pressure(..)
                 | Face::PressureAlong(..)
                 | Face::Absorbing { .. } => is_open = true,
-                // In a corner, the wall that moves less.
-                Face::Wall(velocity) => {
-                    let velocity = velocity.padded();
-                    let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
-                    wall = Some(wall.filter(|other| speed(other) <= speed(&velocity)).unwrap_or(velocity));
-                }
+                // Its velocity is that where a link meets it: see `varying_wall`.
+                Face::WallProfile(_) => wall = Some([0.0; 3]),
+                // In a corner neither moves across the edge: see `sliding`.
+                Face::Wall(velocity) => wall = Some(velocity.padded()),
             }
         }
         match wall {
@@ -145,41 +168,82 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         }
     }
 
+    /// The fluid cell that lies beyond another one along a direction, through periodic faces and in mirrors too.
+    pub(crate) fn seen(&self, cell: [i64; 3], direction: usize) -> Option<Seen> {
+        let beside = beyond::<L, Q>(cell, direction);
+        match self.neighbour(beside) {
+            Neighbour::Fluid => Some(Seen { cell: beside, mirror: [false; 3] }),
+            Neighbour::Wrapped(cell) => Some(Seen { cell, mirror: [false; 3] }),
+            Neighbour::Mirror(mirror) => match self.neighbour(reflected::<L, Q>(cell, direction, mirror)) {
+                Neighbour::Fluid => Some(Seen { cell: reflected::<L, Q>(cell, direction, mirror), mirror }),
+                Neighbour::Wrapped(cell) => Some(Seen { cell, mirror }),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Where the population left that reaches a cell from beyond along `direction`, against it.
+    fn sent(&self, cell: [i64; 3], direction: usize) -> Option<Port> {
+        let Seen { cell, mirror } = self.seen(cell, direction)?;
+        let direction = mirrored::<L, Q>(opposite(direction), mirror);
+        Some(Port { place: self.grid.place(cell), direction })
+    }
+
     fn copy<T: Real>(&self, copies: &mut Copies<T>, cell: [usize; 3], direction: usize) {
         let cell = cell.map(|x| x as i64);
-        let velocity = L::VELOCITIES[direction];
-        let back = opposite(direction);
         let here = self.grid.place(cell);
-        let to = Port { place: here, direction: back };
+        let to = Port { place: here, direction: opposite(direction) };
         let bounced = Port { place: here, direction };
         match self.neighbour(beyond::<L, Q>(cell, direction)) {
             Neighbour::Fluid | Neighbour::Open | Neighbour::Solid(_) => {}
-            Neighbour::Wrapped(image) => {
-                let from = Port { place: self.grid.place(image), direction: back };
-                copies.push::<L, Q>(self.grid, to, from, 0.0);
+            Neighbour::Wrapped(_) | Neighbour::Mirror(_) => {
+                // In a mirror there may be an obstacle: that is a cut.
+                if let Some(from) = self.sent(cell, direction)
+                    && !self.slip(copies, bounced, cell, from)
+                {
+                    copies.push::<L, Q>(self.grid, to, from, 0.0);
+                }
             }
             Neighbour::Wall(wall) => {
-                let added = -6.0 * L::WEIGHTS[direction] * dot(velocity, wall);
+                let wall = self.sliding(cell, direction, self.varying_wall(cell, direction).unwrap_or(wall));
+                let added = -6.0 * L::WEIGHTS[direction] * dot(L::VELOCITIES[direction], wall);
                 copies.push::<L, Q>(self.grid, to, bounced, added);
-            }
-            Neighbour::Mirror(mirror) => {
-                let from = self.mirrored(cell, direction, mirror).unwrap_or(bounced);
-                copies.push::<L, Q>(self.grid, to, from, 0.0);
             }
         }
     }
 
-    /// Where comes from, at a free-slip face, what enters against `direction`; none when that cell is not fluid.
-    fn mirrored(&self, cell: [i64; 3], direction: usize, mirror: [bool; 3]) -> Option<Port> {
+    /// Velocity of a wall where a link meets it. Beside what is no fluid a wall cannot push fluid on: there, across the
+    /// edge, it moves as what bounds it. All links along a wall then sum to no mass.
+    fn sliding(&self, cell: [i64; 3], direction: usize, mut wall: [f64; 3]) -> [f64; 3] {
         let velocity = L::VELOCITIES[direction];
-        let along = |axis: usize| if mirror[axis] { 0 } else { velocity[axis] };
-        let source: [i64; 3] = std::array::from_fn(|axis| cell[axis] + i64::from(along(axis)));
-        let before: [i32; 3] =
-            std::array::from_fn(|axis| if mirror[axis] { velocity[axis] } else { -velocity[axis] });
-        let from = L::VELOCITIES.iter().position(|c| *c == before)?;
-        match self.neighbour(source) {
-            Neighbour::Fluid => Some(Port { place: self.grid.place(source), direction: from }),
-            Neighbour::Wrapped(image) => Some(Port { place: self.grid.place(image), direction: from }),
+        for axis in (0..L::Dim::N).filter(|axis| velocity[*axis] != 0) {
+            let mut beside = cell;
+            beside[axis] += i64::from(velocity[axis]);
+            wall[axis] = match self.neighbour(beside) {
+                Neighbour::Fluid | Neighbour::Wrapped(_) | Neighbour::Open => wall[axis],
+                Neighbour::Wall(_) | Neighbour::Mirror(_) => 0.0,
+                Neighbour::Solid(number) => {
+                    let obstacle = &self.setup.obstacles[number];
+                    let ends = [cell, beyond::<L, Q>(cell, direction)].map(|cell| self.domain.centre(cell));
+                    let point = (ends[0] + ends[1]) * 0.5;
+                    let arm = point - self.domain.nearest_image(obstacle, point);
+                    obstacle.velocity_at(arm).component(axis) / self.setup.lattice_speed()
+                }
+            };
+        }
+        wall
+    }
+
+    /// The obstacle that a link meets, the cell that it covers there, and along which axes it is seen in a mirror.
+    fn met(&self, cell: [i64; 3], direction: usize) -> Option<(usize, Seen)> {
+        let beside = beyond::<L, Q>(cell, direction);
+        let (cell, mirror) = match self.neighbour(beside) {
+            Neighbour::Mirror(mirror) => (reflected::<L, Q>(cell, direction, mirror), mirror),
+            _ => (beside, [false; 3]),
+        };
+        match self.neighbour(cell) {
+            Neighbour::Solid(number) => Some((number, Seen { cell, mirror })),
             _ => None,
         }
     }
@@ -187,30 +251,62 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
     /// The link of a cell along `direction` when this image of this obstacle cuts it.
     fn cut(&self, cell: [usize; 3], direction: usize, number: usize, image: usize) -> Option<Cut> {
         let cell = cell.map(|x| x as i64);
-        let neighbour = beyond::<L, Q>(cell, direction);
-        if !matches!(self.neighbour(neighbour), Neighbour::Solid(found) if found == number) {
-            return None;
-        }
+        let (_, solid) = self.met(cell, direction).filter(|(found, _)| *found == number)?;
         let (setup, obstacle, images) = (self.setup, &self.setup.obstacles[number], &self.images[number]);
-        let (outside, inside) = (self.domain.centre(cell), self.domain.centre(neighbour));
+        let inside = self.domain.centre(solid.cell);
         // Images that overlap share the cells near them: the first one has the link.
         if images.iter().position(|image| obstacle.shape.contains(inside - *image)) != Some(image) {
             return None;
         }
-        let (outside, inside) = (outside - images[image], inside - images[image]);
-        let q = obstacle.shape.crossing(outside, inside);
-        let arm = outside + (inside - outside) * q - obstacle.shape.centre();
+        let outside = self.domain.centre(cell) - images[image];
+        let beside = self.domain.centre(beyond::<L, Q>(cell, direction)) - images[image];
+        let Meeting { q, arm, in_mirror } =
+            meeting(&*obstacle.shape, [outside, beside, inside - images[image]]);
+        let towards = if in_mirror { mirrored::<L, Q>(direction, solid.mirror) } else { direction };
         let wall = obstacle.velocity_at(arm).padded().map(|c| c / setup.lattice_speed());
-        let behind = beyond::<L, Q>(cell, opposite(direction));
-        let has_cell_behind = matches!(self.neighbour(behind), Neighbour::Fluid);
-        let motion = obstacle.wall.motion(q, has_cell_behind);
+        let behind = self.sent(cell, opposite(direction));
+        let motion = obstacle.wall.motion(q, behind.is_some());
         Some(Cut {
             port: Port { place: self.grid.place(cell), direction },
-            weights: obstacle.wall.weights(q, has_cell_behind),
-            added: -6.0 * L::WEIGHTS[direction] * motion * dot(L::VELOCITIES[direction], wall),
+            behind,
+            towards,
+            weights: obstacle.wall.weights(q, behind.is_some()),
+            added: -6.0 * L::WEIGHTS[towards] * motion * dot(L::VELOCITIES[towards], wall),
             arm: arm.padded().map(|c| c / setup.spacing),
             velocity: wall,
         })
+    }
+}
+
+/// Where a link meets a surface.
+struct Meeting<V> {
+    /// Share of the way to the cell that is covered.
+    q: f64,
+    /// From the centre of the shape \[m\].
+    arm: V,
+    /// Whether it is met beyond the mirror.
+    in_mirror: bool,
+}
+
+/// Where a link from the centre of a cell towards that of its neighbour meets a shape that covers a third centre: that of the neighbour
+/// or, where the link ends in a mirror, of its image. Mirrors lie half-way.
+fn meeting<D: Dim>(shape: &dyn Shape<D>, [outside, beside, inside]: [D::Vec; 3]) -> Meeting<D::Vec> {
+    let on = |from: D::Vec, to: D::Vec| {
+        let share = shape.crossing(from, to);
+        // From the centre on, so that a shift changes no bit.
+        (share, (from - shape.centre()) + (to - from) * share)
+    };
+    if beside == inside {
+        let (q, arm) = on(outside, inside);
+        return Meeting { q, arm, in_mirror: false };
+    }
+    let middle = (outside + beside) * 0.5;
+    if shape.contains(middle) {
+        let (share, arm) = on(outside, middle);
+        Meeting { q: 0.5 * share, arm, in_mirror: false }
+    } else {
+        let (share, arm) = on(middle, inside);
+        Meeting { q: 0.5 + 0.5 * share, arm, in_mirror: true }
     }
 }
 

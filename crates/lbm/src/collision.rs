@@ -95,8 +95,10 @@ pub(crate) struct Parameters<T> {
     pub(crate) odd: T,
     /// Rates of ghosts over their squared lengths: the rate of the third serves the fourth too.
     pub(crate) ghosts: [T; 4],
-    /// Force density.
+    /// Force density that is the same everywhere.
     pub(crate) force: [T; 3],
+    /// Factor of the force density of each cell.
+    pub(crate) field_factor: T,
     pub(crate) tau: T,
     pub(crate) odd_time: [T; 3],
     /// 18 sqrt(2) C^2 of the closure.
@@ -108,16 +110,19 @@ pub(crate) trait Parts: Copy + Send + Sync + 'static {
     const GHOSTS: bool;
     const FORCE: bool;
     const CLOSURE: bool;
+    /// A force of each cell; needs `FORCE`.
+    const FIELD: bool;
 }
 
 /// Parts that are on.
 #[derive(Clone, Copy)]
-pub(crate) struct With<const GHOSTS: bool, const FORCE: bool, const CLOSURE: bool>;
+pub(crate) struct With<const GHOSTS: bool, const FORCE: bool, const CLOSURE: bool, const FIELD: bool>;
 
-impl<const G: bool, const F: bool, const C: bool> Parts for With<G, F, C> {
+impl<const G: bool, const F: bool, const C: bool, const V: bool> Parts for With<G, F, C, V> {
     const GHOSTS: bool = G;
     const FORCE: bool = F;
     const CLOSURE: bool = C;
+    const FIELD: bool = V;
 }
 
 /// What a collision needs, by name.
@@ -125,8 +130,12 @@ impl<const G: bool, const F: bool, const C: bool> Parts for With<G, F, C> {
 pub(crate) struct Physics {
     pub(crate) operator: Operator,
     pub(crate) tau: f64,
-    /// Force density in lattice units.
+    /// Force density that is the same everywhere, in lattice units.
     pub(crate) force: [f64; 3],
+    /// Whether the force varies, and whether it does in space: then there is a field of it.
+    pub(crate) varies: [bool; 2],
+    /// Factor of the field.
+    pub(crate) field_factor: f64,
     /// Smagorinsky constant; zero for none.
     pub(crate) smagorinsky: f64,
 }
@@ -137,7 +146,11 @@ impl Physics {
     }
 
     pub(crate) fn has_force(&self) -> bool {
-        self.force != [0.0; 3]
+        self.force != [0.0; 3] || self.varies[0]
+    }
+
+    pub(crate) fn has_field(&self) -> bool {
+        self.varies[1]
     }
 
     pub(crate) fn has_closure(&self) -> bool {
@@ -155,6 +168,7 @@ impl Physics {
             odd: T::of(1.0 / self.operator.odd_time(self.tau)),
             ghosts,
             force: self.force.map(T::of),
+            field_factor: T::of(self.field_factor),
             tau: T::of(self.tau),
             odd_time: self.operator.odd_time_terms().map(T::of),
             closure: T::of(18.0 * std::f64::consts::SQRT_2 * self.smagorinsky.powi(2)),

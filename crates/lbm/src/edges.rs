@@ -7,6 +7,7 @@
 //! their momentum, the density given fixes their sum.
 
 use crate::absorbing::Flowing;
+use crate::body_force::Force;
 use crate::lattice::{Lattice, opposite};
 use crate::open::{OpenScheme, dot, equilibrium, moments, regularise};
 use crate::populations::Populations;
@@ -49,16 +50,17 @@ impl OpenEdge {
     pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) {
         for cell in &self.cells {
+            let force = forces.at(cell.place);
             let entering = |place: usize| populations.entering::<L, Q>(place).map(T::double);
             let (mut excess, mut velocity) = (cell.excess, cell.velocity);
             for &(place, weight) in &cell.beside {
-                excess += weight * moments::<L, Q>(&entering(place), force).0;
+                excess += weight * moments::<L, Q>(&entering(place), forces.at(place)).0;
             }
             for &(place, weight) in &cell.carried {
-                let flowing = Flowing::of::<L, T, Q>(populations, place, force);
+                let flowing = Flowing::of::<L, T, Q>(populations, place, forces.at(place));
                 for axis in 0..3 {
                     velocity[axis] += weight * flowing.velocity[axis];
                 }

@@ -9,7 +9,7 @@
 use crate::collision::{Parameters, Parts};
 use crate::lattice::{D2Q9, D3Q19};
 use crate::real::Real;
-use crate::relax::{State, collide, rates, state};
+use crate::relax::{State, collide, field_of, rates, state, with_field};
 use multiversion::multiversion;
 
 /// Length of a strip in cache lines, and the most cells that are.
@@ -19,10 +19,11 @@ const LONGEST_STRIP: usize = STRIP_LINES * 16;
 /// Collision of a row of cells.
 pub trait Rows<const Q: usize> {
     /// Collides the cells of a row: population `i` comes from `rows[i]`, and what leaves along `i`
-    /// goes to the row of the direction against it. All rows are equally long.
+    /// goes to the row of the direction against it. All rows are equally long. `field` has the force of each cell
+    /// along each axis of the lattice, if there is one.
     #[doc(hidden)]
     #[allow(private_interfaces, private_bounds)]
-    fn collide_row<T: Real, P: Parts>(rows: [&mut [T]; Q], parameters: &Parameters<T>);
+    fn collide_row<T: Real, P: Parts>(rows: [&mut [T]; Q], field: [&[T]; 3], parameters: &Parameters<T>);
 }
 
 /// One function argument per direction: only then does the compiler know that rows do not overlap.
@@ -30,11 +31,14 @@ macro_rules! rows {
     ($lattice:ident, $q:literal, $function:ident, $($row:ident $against:literal),+) => {
         #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw+fma", "x86_64+avx2+fma"))]
         #[allow(clippy::too_many_arguments)]
-        fn $function<T: Real, P: Parts>($($row: &mut [T],)+ parameters: &Parameters<T>) {
+        fn $function<T: Real, P: Parts>($($row: &mut [T],)+ field: [&[T]; 3], parameters: &Parameters<T>) {
             let cells = [$($row.len()),+].into_iter().min().unwrap_or(0);
             $(let $row = &mut $row[..cells];)+
             if !P::CLOSURE {
+                let field = field_of::<$lattice, T, P, $q>(field, 0..cells);
                 for x in 0..cells {
+                    let here = with_field::<$lattice, T, P, $q>(parameters, field, x);
+                    let parameters = if P::FIELD { &here } else { parameters };
                     let f = [$($row[x]),+];
                     let state = state::<$lattice, T, P, $q>(&f, parameters);
                     let rates = rates::<T, P>(state, parameters);
@@ -49,7 +53,10 @@ macro_rules! rows {
                 let end = (start + STRIP_LINES * T::LINE).min(cells);
                 let [excess, inverse, even, odd] = numbers.each_mut().map(|values| &mut values[..end - start]);
                 $(let $row = &mut $row[start..end];)+
+                let field = field_of::<$lattice, T, P, $q>(field, start..end);
                 for x in 0..end - start {
+                    let here = with_field::<$lattice, T, P, $q>(parameters, field, x);
+                    let parameters = if P::FIELD { &here } else { parameters };
                     let state = state::<$lattice, T, P, $q>(&[$($row[x]),+], parameters);
                     (excess[x], inverse[x], even[x]) = (state.excess, state.inverse, state.squared);
                 }
@@ -58,6 +65,8 @@ macro_rules! rows {
                     [even[x], odd[x]] = rates::<T, P>(state, parameters);
                 }
                 for x in 0..end - start {
+                    let here = with_field::<$lattice, T, P, $q>(parameters, field, x);
+                    let parameters = if P::FIELD { &here } else { parameters };
                     let state = State { excess: excess[x], inverse: inverse[x], squared: T::of(0.0) };
                     let f = [$($row[x]),+];
                     let after = collide::<$lattice, T, P, $q>(&f, state, [even[x], odd[x]], parameters);
@@ -69,9 +78,13 @@ macro_rules! rows {
 
         impl Rows<$q> for $lattice {
             #[allow(private_interfaces, private_bounds)]
-            fn collide_row<T: Real, P: Parts>(rows: [&mut [T]; $q], parameters: &Parameters<T>) {
+            fn collide_row<T: Real, P: Parts>(
+                rows: [&mut [T]; $q],
+                field: [&[T]; 3],
+                parameters: &Parameters<T>,
+            ) {
                 let [$($row),+] = rows;
-                $function::<T, P>($($row,)+ parameters);
+                $function::<T, P>($($row,)+ field, parameters);
             }
         }
     };

@@ -1,8 +1,10 @@
 //! The solver.
 
+use crate::body_force::{self, BodyForce, Force, ForceField};
 use crate::boundary::{Beyond, Builder};
 use crate::collision::{Parameters, Parts, Physics, With};
 use crate::lattice::Lattice;
+use crate::named::SetFace;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of, cover};
 use crate::open::{dot, equilibrium, moments};
 use crate::populations::{Grid, Layout, Populations, Runs};
@@ -19,8 +21,9 @@ const BEYOND: f64 = 4.0 / 9.0;
 /// Fewest steps at once for which links are sorted for two steps together.
 const PAIRED: u64 = 4;
 
-type StepFunction<T> = fn(&mut Populations<T>, &Runs, &Parameters<T>, T) -> bool;
-type PairFunction<T> = fn(&mut Populations<T>, &Runs, &RowLinks<T>, &Parameters<T>, T) -> bool;
+type StepFunction<T> = fn(&mut Populations<T>, &Runs, &ForceField<T>, &Parameters<T>, T) -> bool;
+type PairFunction<T> =
+    fn(&mut Populations<T>, &Runs, &RowLinks<T>, &ForceField<T>, &[Parameters<T>; 2], T) -> bool;
 
 /// One step, and two in one pass.
 type Steps<T> = (StepFunction<T>, PairFunction<T>);
@@ -36,11 +39,14 @@ pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
     pub(crate) may_have_moved: bool,
     pub(crate) beyond: Beyond<T>,
     pub(crate) row_links: RowLinks<T>,
+    /// As at the time reached.
     pub(crate) physics: Physics,
     parameters: Parameters<T>,
+    pub(crate) field: ForceField<T>,
     step: Steps<T>,
     pub(crate) steps: u64,
     pub(crate) fluid_cells: usize,
+    pub(crate) set_faces: Vec<SetFace<L::Dim>>,
 }
 
 impl<L: Lattice<Q>, const Q: usize, T: Real> std::fmt::Debug for Lbm<L, Q, T> {
@@ -76,15 +82,19 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         }
         let cover = cover(&setup)?;
         let is_fluid = |cell| cover.is_empty() || cover[cell_index(setup.cells, cell)] == 0;
+        body_force::check(&setup, is_fluid)?;
         let runs = Runs::of(&grid, is_fluid);
         let beyond = Builder::<L, Q>::new(&setup, &grid, &cover).build();
         let solid = cover.iter().filter(|number| **number != 0).count();
         let physics = Physics {
             operator: setup.operator,
             tau: setup.tau(),
-            force: setup.acceleration.padded().map(|a| a * setup.time_step.powi(2) / setup.spacing),
+            force: [0.0; 3],
+            varies: [setup.body_force.is_some(), setup.body_force.as_ref().is_some_and(BodyForce::has_field)],
+            field_factor: 1.0,
             smagorinsky: setup.smagorinsky.unwrap_or(0.0),
         };
+        let field = ForceField::new(&setup, &grid);
         let mut lbm = Self {
             populations: Populations::new::<Q>(grid, &runs),
             fluid_cells: setup.cells.iter().product::<usize>() - solid,
@@ -96,10 +106,14 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             row_links: RowLinks::default(),
             parameters: physics.parameters::<L, T, Q>(),
             step: step_function::<L, T, Q>(&physics),
+            field,
             physics,
             steps: 0,
+            set_faces: Vec::new(),
             setup,
         };
+        lbm.set_acceleration(lbm.setup.acceleration);
+        lbm.field.fill(&lbm.setup, 0.0);
         if lbm.is_pairable() {
             lbm.sort_links();
         }
@@ -138,19 +152,58 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 let (low, high) = (lattice_velocity(centre - half), lattice_velocity(centre + half));
                 *row = std::array::from_fn(|component| high[component] - low[component]);
             }
-            let f = started::<L, Q>(excess, lattice_velocity(centre), gradient, &self.physics);
+            let force = self.force().at(place);
+            let f = started::<L, Q>(excess, lattice_velocity(centre), gradient, (self.physics.tau, force));
             // What enters from beyond the fluid too: boundaries act from the first step on.
             self.populations.set_entering::<L, Q>(place, f.map(T::of));
         }
+        // What open faces learned was of another flow.
+        self.beyond.open.set_seen(&vec![[0.0; 2]; self.beyond.open.seen().len()]);
+        self.look_at_open_faces();
+    }
+
+    /// Lets open faces look at the flow as it is.
+    pub(crate) fn look_at_open_faces(&mut self) {
+        let Physics { force: uniform, field_factor: factor, .. } = self.physics;
+        let force = Force { uniform, factor, field: &self.field };
+        self.beyond.open.look::<L, T, Q>(&self.populations, force);
     }
 
     /// Sets the body force per mass \[m/s^2\], from the next step on.
     pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) {
-        let Setup { spacing, time_step, .. } = self.setup;
         self.setup.acceleration = acceleration;
-        self.physics.force = acceleration.padded().map(|a| a * time_step.powi(2) / spacing);
+        self.physics = self.physics_at(self.steps);
         self.parameters = self.physics.parameters::<L, T, Q>();
         self.step = step_function::<L, T, Q>(&self.physics);
+    }
+
+    /// What a collision needs after so many steps.
+    fn physics_at(&self, steps: u64) -> Physics {
+        let Setup { spacing, time_step, acceleration, body_force, .. } = &self.setup;
+        let time = steps as f64 * time_step;
+        let mut physics = self.physics;
+        let mut acceleration = *acceleration;
+        if let Some(force) = body_force {
+            acceleration += force.uniform(time);
+            physics.field_factor = force.factor(time);
+        }
+        physics.force = acceleration.padded().map(|a| a * time_step.powi(2) / spacing);
+        physics
+    }
+
+    /// Takes the body force of the time reached, if there is one that varies.
+    pub(crate) fn follow_body_force(&mut self) {
+        let Some(force) = &self.setup.body_force else { return };
+        if force.is_asked_everywhere() {
+            self.field.fill(&self.setup, self.steps as f64 * self.setup.time_step);
+        }
+        self.physics = self.physics_at(self.steps);
+        self.parameters = self.physics.parameters::<L, T, Q>();
+    }
+
+    /// The force on any cell at the time reached.
+    pub(crate) fn force(&self) -> Force<'_, T> {
+        Force { uniform: self.physics.force, factor: self.physics.field_factor, field: &self.field }
     }
 
     fn apply_boundaries(&mut self) {
@@ -158,7 +211,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         for obstacle in &mut self.beyond.obstacles {
             obstacle.apply::<L, Q>(&mut self.populations);
         }
-        self.beyond.open.apply::<L, T, Q>(&mut self.populations, self.physics.force);
+        let Physics { force: uniform, field_factor: factor, .. } = self.physics;
+        let force = Force { uniform, factor, field: &self.field };
+        self.beyond.open.apply::<L, T, Q>(&mut self.populations, force);
     }
 
     /// Advances; the step must be that of the setup.
@@ -176,14 +231,22 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let (one, two) = self.step;
         let mut left = steps;
         while left > 0 {
-            let (populations, bound) = (&mut self.populations, T::of(BEYOND));
-            let (taken, is_beyond) = if is_paired && left > 1 && populations.layout == Layout::Natural {
-                (2, two(populations, &self.runs, &self.row_links, &self.parameters, bound))
+            let bound = T::of(BEYOND);
+            let (taken, is_beyond) = if is_paired && left > 1 && self.populations.layout == Layout::Natural {
+                let second = match &self.setup.body_force {
+                    Some(_) => self.physics_at(self.steps + 1).parameters::<L, T, Q>(),
+                    None => self.parameters,
+                };
+                let parameters = [self.parameters, second];
+                let populations = &mut self.populations;
+                (2, two(populations, &self.runs, &self.row_links, &self.field, &parameters, bound))
             } else {
-                (1, one(populations, &self.runs, &self.parameters, bound))
+                let populations = &mut self.populations;
+                (1, one(populations, &self.runs, &self.field, &self.parameters, bound))
             };
-            self.apply_boundaries();
             self.steps += taken;
+            self.follow_body_force();
+            self.apply_boundaries();
             left -= taken;
             if is_beyond {
                 return Err(self.culprit());
@@ -192,9 +255,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         Ok(())
     }
 
-    /// Whether two steps may share a pass over memory: open faces act on all cells between.
+    /// Whether two steps may share a pass over memory: open faces, and a force that is asked everywhere, act on all cells
+    /// between.
     fn is_pairable(&self) -> bool {
-        L::Dim::N == 2 && self.beyond.open.is_empty()
+        let is_asked = self.setup.body_force.as_ref().is_some_and(BodyForce::is_asked_everywhere);
+        L::Dim::N == 2 && self.beyond.open.is_empty() && !is_asked
     }
 
     /// Links as they are now, for steps in pairs.
@@ -232,7 +297,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     /// Density excess and momentum in lattice units, half of the force included.
     pub(crate) fn moments(&self, place: usize) -> (f64, [f64; 3]) {
         let f = self.populations.entering::<L, Q>(place).map(T::double);
-        moments::<L, Q>(&f, self.physics.force)
+        moments::<L, Q>(&f, self.force().at(place))
     }
 
     /// Pressure \[Pa\] over that at rest and velocity \[m/s\] in a cell; none inside an obstacle.
@@ -287,15 +352,15 @@ fn started<L: Lattice<Q>, const Q: usize>(
     excess: f64,
     velocity: [f64; 3],
     gradient: [[f64; 3]; 3],
-    physics: &Physics,
+    (tau, force): (f64, [f64; 3]),
 ) -> [f64; Q] {
     let trace: f64 = (0..3).map(|axis| gradient[axis][axis]).sum();
     let mut f = equilibrium::<L, Q>(excess, velocity);
     for (i, f) in f.iter_mut().enumerate() {
         let c = L::VELOCITIES[i].map(f64::from);
         let strained: f64 = (0..3).map(|a| (0..3).map(|b| c[a] * c[b] * gradient[a][b]).sum::<f64>()).sum();
-        let stress = -3.0 * physics.tau * (1.0 + excess) * (strained - trace / 3.0);
-        *f += L::WEIGHTS[i] * (stress - 1.5 * dot(L::VELOCITIES[i], physics.force));
+        let stress = -3.0 * tau * (1.0 + excess) * (strained - trace / 3.0);
+        *f += L::WEIGHTS[i] * (stress - 1.5 * dot(L::VELOCITIES[i], force));
     }
     f
 }
@@ -305,14 +370,19 @@ fn step_function<L: Lattice<Q>, T: Real, const Q: usize>(physics: &Physics) -> S
     fn of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>() -> Steps<T> {
         (Populations::step::<L, P, Q>, Populations::two_steps::<L, P, Q>)
     }
-    match (physics.has_ghosts(), physics.has_force(), physics.has_closure()) {
-        (false, false, false) => of::<L, T, With<false, false, false>, Q>(),
-        (false, false, true) => of::<L, T, With<false, false, true>, Q>(),
-        (false, true, false) => of::<L, T, With<false, true, false>, Q>(),
-        (false, true, true) => of::<L, T, With<false, true, true>, Q>(),
-        (true, false, false) => of::<L, T, With<true, false, false>, Q>(),
-        (true, false, true) => of::<L, T, With<true, false, true>, Q>(),
-        (true, true, false) => of::<L, T, With<true, true, false>, Q>(),
-        (true, true, true) => of::<L, T, With<true, true, true>, Q>(),
+    fn forced<L: Lattice<Q>, T: Real, const G: bool, const C: bool, const Q: usize>(
+        physics: &Physics,
+    ) -> Steps<T> {
+        match (physics.has_force(), physics.has_field()) {
+            (false, _) => of::<L, T, With<G, false, C, false>, Q>(),
+            (true, false) => of::<L, T, With<G, true, C, false>, Q>(),
+            (true, true) => of::<L, T, With<G, true, C, true>, Q>(),
+        }
+    }
+    match (physics.has_ghosts(), physics.has_closure()) {
+        (false, false) => forced::<L, T, false, false, Q>(physics),
+        (false, true) => forced::<L, T, false, true, Q>(physics),
+        (true, false) => forced::<L, T, true, false, Q>(physics),
+        (true, true) => forced::<L, T, true, true, Q>(physics),
     }
 }

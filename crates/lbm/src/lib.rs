@@ -32,10 +32,13 @@
 //! |---|---|---|
 //! | [`Operator`] | one, two or multiple relaxation times, regularised | \[Qian1992; Ginzburg2008; Lallemand2000; DHumieres2002; LattChopard2006\] |
 //! | eddy viscosity | Smagorinsky in closed form, `(C h)^2 sqrt(2 S:S)` | \[Hou1996\] |
-//! | body force | second order, relaxed by the same rates | \[Guo2002\] |
-//! | [`Face`] | periodic, wall at rest or moving, free slip, velocity, pressure, absorbing | \[ZouHe1997; HechtHarting2010; Latt2008; PoinsotLele1992; IzquierdoFueyo2008\] |
-//! | [`Obstacle`] | any [`Shape`], also from an image ([`Bitmap`]); half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
+//! | body force | second order, relaxed by the same rates; constant, or varying in space and time ([`BodyForce`]) | \[Guo2002\] |
+//! | [`Face`] | periodic, wall at rest, moving or with a profile of velocities, slip length, free slip, velocity, pressure, absorbing | \[ZouHe1997; HechtHarting2010; Latt2008; PoinsotLele1992; IzquierdoFueyo2008\] |
+//! | [`Obstacle`] | any [`Shape`], also from an image ([`Bitmap`]) or around the fluid ([`Hole`]); half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
+//!
+//! [`Setup::for_flow`] finds cells and step from length, speed, viscosity and resolution; [`Lbm::flow_field`] gives pressure and
+//! velocity of all cells; [`Lbm::set_obstacle_motion`] and [`Lbm::set_face_velocity`] change motions by name.
 //!
 //! Obstacles move when a motion is lent to the fluid (`Accepts<ObstacleMotion>`), as by a coupling. Open faces bear less than
 //! the fluid within: in a stream of 0.1
@@ -50,10 +53,13 @@
 
 mod absorbing;
 mod bitmap;
+mod body_force;
 mod boundary;
 mod collision;
 mod edges;
+mod flow_field;
 mod gauge;
+mod hole;
 #[cfg(feature = "png")]
 mod image;
 mod kernel;
@@ -61,6 +67,7 @@ mod lattice;
 mod lbm;
 mod links;
 mod moving;
+mod named;
 mod obstacle;
 mod open;
 mod openings;
@@ -71,22 +78,28 @@ mod probes;
 mod real;
 mod relax;
 mod rows;
+mod scales;
 mod setup;
 mod shape;
 mod show;
 mod solver;
 #[cfg(feature = "serde")]
 pub mod spec;
+mod wall_faces;
 
 pub use bitmap::{Bitmap, Solid};
+pub use body_force::BodyForce;
 pub use collision::{OddRate, Operator};
+pub use flow_field::FlowField;
 pub use gauge::Gauge;
+pub use hole::Hole;
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
 pub use links::WallScheme;
 pub use obstacle::{Obstacle, Reference};
 pub use open::OpenScheme;
 pub use real::Real;
+pub use scales::FlowScales;
 pub use setup::{Face, Profile, Setup, SetupError};
 pub use shape::{Ball, Block, Extruded, Polygon, Shape};
 

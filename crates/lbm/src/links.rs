@@ -6,6 +6,7 @@
 use crate::lattice::{Lattice, opposite};
 use crate::populations::{Grid, Layout, Populations};
 use crate::real::Real;
+use crate::wall_faces::SlipLink;
 
 /// A population: the place of a cell and a direction.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +18,12 @@ pub(crate) struct Port {
 /// Index of a population in both layouts.
 pub(crate) type Both = [u32; 2];
 
-fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+pub(crate) fn entering<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
     [Layout::Natural, Layout::Turned]
         .map(|layout| grid.entering::<L, Q>(layout, port.place, port.direction) as u32)
 }
 
-fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
+pub(crate) fn leaving<L: Lattice<Q>, const Q: usize>(grid: &Grid, port: Port) -> Both {
     [Layout::Natural, Layout::Turned]
         .map(|layout| grid.leaving::<L, Q>(layout, port.place, port.direction) as u32)
 }
@@ -33,11 +34,13 @@ pub(crate) struct Copies<T> {
     pub(crate) resting: Vec<(Both, Both)>,
     /// With what a moving wall adds.
     pub(crate) moving: Vec<(Both, Both, T)>,
+    /// Of walls along which the fluid slips.
+    pub(crate) slipping: Vec<SlipLink<T>>,
 }
 
 impl<T: Real> Copies<T> {
     pub(crate) fn new() -> Self {
-        Self { resting: Vec::new(), moving: Vec::new() }
+        Self { resting: Vec::new(), moving: Vec::new(), slipping: Vec::new() }
     }
 
     /// What enters at `to` is what left at `from`, plus `added`.
@@ -65,11 +68,13 @@ impl<T: Real> Copies<T> {
         for (to, from, added) in &self.moving {
             values[to[at] as usize] = values[from[at] as usize] + *added;
         }
+        self.slipping.iter().for_each(|link| link.apply(populations));
     }
 
     pub(crate) fn bytes(&self) -> usize {
         size_of::<(Both, Both)>() * self.resting.capacity()
             + size_of::<(Both, Both, T)>() * self.moving.capacity()
+            + size_of::<SlipLink<T>>() * self.slipping.capacity()
     }
 }
 
@@ -86,11 +91,20 @@ pub enum WallScheme {
 }
 
 impl WallScheme {
+    /// The scheme of a link without a cell behind: beyond half of the link interpolation does without it.
+    fn possible(self, q: f64, has_cell_behind: bool) -> Self {
+        match self {
+            Self::HalfWay => self,
+            _ if has_cell_behind => self,
+            _ if q >= 0.5 => Self::Bouzidi,
+            _ => Self::HalfWay,
+        }
+    }
+
     /// Weights of what left the cell towards the wall, what left the cell behind towards the wall, and what left the
     /// cell away from the wall.
     pub(crate) fn weights(self, q: f64, has_cell_behind: bool) -> [f64; 3] {
-        match self {
-            _ if !has_cell_behind => [1.0, 0.0, 0.0],
+        match self.possible(q, has_cell_behind) {
             Self::HalfWay => [1.0, 0.0, 0.0],
             Self::Bouzidi if q < 0.5 => [2.0 * q, 1.0 - 2.0 * q, 0.0],
             Self::Bouzidi => [0.5 / q, 0.0, 1.0 - 0.5 / q],
@@ -100,8 +114,7 @@ impl WallScheme {
 
     /// Factor of `-2 w_i rho c_i . u_w / c_s^2` for a moving wall.
     pub(crate) fn motion(self, q: f64, has_cell_behind: bool) -> f64 {
-        match self {
-            _ if !has_cell_behind => 1.0,
+        match self.possible(q, has_cell_behind) {
             Self::HalfWay => 1.0,
             Self::Bouzidi if q < 0.5 => 1.0,
             Self::Bouzidi => 0.5 / q,
@@ -115,6 +128,10 @@ impl WallScheme {
 pub(crate) struct Cut {
     /// Cell in the fluid and direction towards the wall.
     pub(crate) port: Port,
+    /// Cell behind and direction towards the wall, as it lies or is seen there.
+    pub(crate) behind: Option<Port>,
+    /// Direction in which the wall is met: seen in a mirror, another one than that of `port`.
+    pub(crate) towards: usize,
     /// Weights after [`WallScheme::weights`].
     pub(crate) weights: [f64; 3],
     /// What the motion of the wall adds.
@@ -156,24 +173,16 @@ impl<T: Real> Cuts<T> {
         let link = |cut: &Cut| {
             let Port { place, direction } = cut.port;
             let back = opposite(direction);
-            let behind = (0..3).fold(0_i64, |sum, axis| {
-                sum - i64::from(L::VELOCITIES[direction][axis]) * grid.stride(axis) as i64
-            });
-            let behind = place.wrapping_add_signed(behind as isize);
             let away = leaving::<L, Q>(grid, Port { place, direction: back });
             let near = leaving::<L, Q>(grid, cut.port);
             // Without a cell behind, the weight is zero and any place does.
-            let behind = if cut.weights[1] == 0.0 {
-                near
-            } else {
-                leaving::<L, Q>(grid, Port { place: behind, direction })
-            };
+            let behind = cut.behind.map_or(near, |behind| leaving::<L, Q>(grid, behind));
             CutLink {
                 to: entering::<L, Q>(grid, Port { place, direction: back }),
                 from: [near, behind, away],
                 weights: cut.weights.map(T::of),
                 added: T::of(cut.added),
-                direction: direction as u8,
+                direction: cut.towards as u8,
                 arm: cut.arm,
                 velocity: cut.velocity,
             }

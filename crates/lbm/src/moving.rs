@@ -4,7 +4,7 @@
 //! that left it, and their mean deviation from equilibrium \[Caiazzo2008\]. What a body covers is lost, what it
 //! uncovers is new: mass is kept on average only.
 
-use crate::boundary::{Builder, Neighbour};
+use crate::boundary::{Builder, Seen, mirrored};
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
 use crate::obstacle::{Domain, Range, cell_index, cells_of};
@@ -49,6 +49,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         self.check_motions()?;
         let uncovered = self.place_obstacles(self.motions.clone());
         self.refill(&uncovered);
+        self.look_at_open_faces();
         Ok(())
     }
 
@@ -58,9 +59,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 let (solver, quantity) = (self.name(), "motion lent to an obstacle");
                 return Err(StepError::NotFinite { solver, quantity, id: k as u64, step: self.steps });
             }
-            let (low, high) = obstacle.shape.bounds();
-            let reach = 0.5 * (high - low).length() * motion.spin.length();
-            let speed = (motion.velocity.length() + reach) / self.setup.lattice_speed();
+            let turning = obstacle.shape.reach() * motion.spin.length();
+            let speed = (motion.velocity.length() + turning) / self.setup.lattice_speed();
             if speed > FASTEST {
                 return Err(StepError::TooStiff {
                     what: format!(
@@ -139,7 +139,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         }
         if faces_too {
             self.beyond.copies = builder.copies();
+            let seen = self.beyond.open.seen();
             self.beyond.open = open_faces::<L, Q>(&self.setup, &self.populations.grid, &self.cover);
+            self.beyond.open.set_seen(&seen);
         }
         self.beyond.obstacles = obstacles;
     }
@@ -158,12 +160,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let cell = fresh.cell.map(|x| x as i64);
         let (mut count, mut excess, mut deviation) = (0.0, 0.0, [0.0; Q]);
         for direction in 1..Q {
-            let beside = std::array::from_fn(|axis| cell[axis] + i64::from(L::VELOCITIES[direction][axis]));
-            let beside = match builder.neighbour(beside) {
-                Neighbour::Fluid => beside,
-                Neighbour::Wrapped(image) => image,
-                _ => continue,
-            };
+            let Some(Seen { cell: beside, mirror }) = builder.seen(cell, direction) else { continue };
             if uncovered.iter().any(|other| other.cell.map(|x| x as i64) == beside) {
                 continue;
             }
@@ -173,7 +170,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             let rest = equilibrium::<L, Q>(density, momentum.map(|j| j / (1.0 + density)));
             count += 1.0;
             excess += density;
-            (0..Q).for_each(|i| deviation[i] += f[i] - rest[i]);
+            for (i, deviation) in deviation.iter_mut().enumerate() {
+                let i = mirrored::<L, Q>(i, mirror);
+                *deviation += f[i] - rest[i];
+            }
         }
         let share = if count > 0.0 { 1.0 / count } else { 0.0 };
         let velocity = fresh.velocity.padded().map(|c| c / self.setup.lattice_speed());

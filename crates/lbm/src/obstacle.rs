@@ -58,7 +58,7 @@ impl<D: Dim> Obstacle<D> {
 
     /// Takes a motion, whose place may lie periods away.
     pub(crate) fn set_motion(&mut self, motion: Motion<D>, domain: &Domain<D>) {
-        self.displacement = domain.wrapped(motion.position) - self.shape.centre();
+        self.displacement = domain.wrapped(motion.position, self) - self.shape.centre();
         (self.velocity, self.spin) = (motion.velocity, motion.spin);
     }
 
@@ -96,9 +96,16 @@ impl<D: Dim> Domain<D> {
         self.cells[axis] as f64 * self.spacing
     }
 
-    /// The point in the domain of which this one \[m\] is a periodic image.
-    fn wrapped(&self, mut point: D::Vec) -> D::Vec {
-        for axis in (0..D::N).filter(|axis| self.is_periodic[*axis]) {
+    /// Axes along which an obstacle is repeated: one without end has no images there.
+    fn repeating(&self, obstacle: &Obstacle<D>) -> impl Iterator<Item = usize> {
+        let (low, high) = obstacle.shape.bounds();
+        let is_periodic = self.is_periodic;
+        (0..D::N).filter(move |axis| is_periodic[*axis] && (high - low).component(*axis).is_finite())
+    }
+
+    /// The point in the domain of which this one \[m\] is a periodic image, for the centre of an obstacle.
+    fn wrapped(&self, mut point: D::Vec, obstacle: &Obstacle<D>) -> D::Vec {
+        for axis in self.repeating(obstacle) {
             let periods = ((point - self.origin).component(axis) / self.length(axis)).floor();
             point -= D::Vec::along(axis, periods * self.length(axis));
         }
@@ -108,7 +115,7 @@ impl<D: Dim> Domain<D> {
     /// Displacements \[m\] at which an obstacle and its periodic images reach into the domain, `margin` cells wider.
     pub(crate) fn images(&self, obstacle: &Obstacle<D>, margin: f64) -> Vec<D::Vec> {
         let mut images = vec![obstacle.displacement];
-        for axis in (0..D::N).filter(|axis| self.is_periodic[*axis]) {
+        for axis in self.repeating(obstacle) {
             let period = D::Vec::along(axis, self.length(axis));
             images = images.into_iter().flat_map(|image| [image, image - period, image + period]).collect();
         }
@@ -122,7 +129,7 @@ impl<D: Dim> Domain<D> {
     /// Centre \[m\] of the image of an obstacle nearest to a point \[m\].
     pub(crate) fn nearest_image(&self, obstacle: &Obstacle<D>, point: D::Vec) -> D::Vec {
         let mut centre = obstacle.shape.centre() + obstacle.displacement;
-        for axis in (0..D::N).filter(|axis| self.is_periodic[*axis]) {
+        for axis in self.repeating(obstacle) {
             let periods = ((point - centre).component(axis) / self.length(axis)).round();
             centre += D::Vec::along(axis, periods * self.length(axis));
         }

@@ -6,7 +6,8 @@
 //! from density, velocity and stress \[Latt2008\], which is stable at higher Reynolds numbers. Where open faces
 //! meet, see [`crate::edges`].
 
-use crate::absorbing::{Flowing, Inner, Normal};
+use crate::absorbing::{Flowing, Inner, Normal, Seen, Sums};
+use crate::body_force::Force;
 use crate::edges::OpenEdge;
 use crate::lattice::{Lattice, opposite};
 use crate::populations::Populations;
@@ -61,6 +62,7 @@ pub(crate) struct OpenFace {
     pub(crate) cells: Vec<OpenCell>,
     /// Of a face that absorbs, for each cell; those without hold the pressure given.
     pub(crate) inner: Vec<Option<Inner>>,
+    pub(crate) seen: Seen,
 }
 
 /// Populations in equilibrium, without their weights.
@@ -107,12 +109,40 @@ impl Open {
         faces.chain(self.edges.iter().flat_map(OpenEdge::given_velocities))
     }
 
-    pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
-        &self,
-        populations: &mut Populations<T>,
-        force: [f64; 3],
+    /// What faces that absorb know, to be saved.
+    pub(crate) fn seen(&self) -> Vec<[f64; 2]> {
+        self.absorbing().map(|face| [face.seen.missed, face.seen.inwards]).collect()
+    }
+
+    /// Puts what faces that absorb knew; one entry for each.
+    pub(crate) fn set_seen(&mut self, values: &[[f64; 2]]) {
+        let absorbing = self.faces.iter_mut().filter(|face| face.known == Known::Wave);
+        for (face, &[missed, inwards]) in absorbing.zip(values) {
+            face.seen = Seen { missed, inwards };
+        }
+    }
+
+    fn absorbing(&self) -> impl Iterator<Item = &OpenFace> {
+        self.faces.iter().filter(|face| face.known == Known::Wave)
+    }
+
+    /// Looks at a flow that was put from outside, or at other cells than before.
+    pub(crate) fn look<L: Lattice<Q>, T: Real, const Q: usize>(
+        &mut self,
+        populations: &Populations<T>,
+        force: Force<'_, T>,
     ) {
-        for face in &self.faces {
+        for face in self.faces.iter_mut().filter(|face| face.known == Known::Wave) {
+            face.seen.inwards = face.inwards::<L, T, Q>(populations, force);
+        }
+    }
+
+    pub(crate) fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
+        &mut self,
+        populations: &mut Populations<T>,
+        force: Force<'_, T>,
+    ) {
+        for face in &mut self.faces {
             face.apply::<L, T, Q>(populations, force);
         }
         for edge in &self.edges {
@@ -123,25 +153,67 @@ impl Open {
 
 impl OpenFace {
     fn apply<L: Lattice<Q>, T: Real, const Q: usize>(
-        &self,
+        &mut self,
         populations: &mut Populations<T>,
-        force: [f64; 3],
+        forces: Force<'_, T>,
     ) {
-        let mut inner = self.inner.iter();
-        for &OpenCell { place, mut velocity, mut excess } in &self.cells {
+        if self.known == Known::Wave {
+            let sums = self.absorb::<L, T, Q>(populations, forces);
+            self.seen.learn(&sums);
+            return;
+        }
+        for &OpenCell { place, velocity, excess } in &self.cells {
+            let force = forces.at(place);
             let mut f = populations.entering::<L, Q>(place).map(T::double);
-            if let Some(Some(inner)) = inner.next() {
-                let known = self.known_sum::<L, Q>(&f, force);
-                let normal = Normal { axis: self.axis, inward: f64::from(self.inward) };
-                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, force);
-                (excess, velocity) = inner.wave(known, excess, normal, flow_in);
-            }
             let (excess, velocity) = self.fill::<L, Q>(&mut f, velocity, excess, force);
             if self.scheme == OpenScheme::Regularised {
                 regularise::<L, Q>(&mut f, excess, velocity, force);
             }
             populations.set_entering::<L, Q>(place, f.map(T::of));
         }
+    }
+
+    fn normal(&self) -> Normal {
+        Normal { axis: self.axis, inward: f64::from(self.inward) }
+    }
+
+    /// Lets sound leave.
+    fn absorb<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        populations: &mut Populations<T>,
+        forces: Force<'_, T>,
+    ) -> Sums {
+        let (normal, mut sums) = (self.normal(), Sums::default());
+        for (&OpenCell { place, velocity, excess }, inner) in self.cells.iter().zip(&self.inner) {
+            let force = forces.at(place);
+            let mut f = populations.entering::<L, Q>(place).map(T::double);
+            if let Some(inner) = inner {
+                let known = self.known_sum::<L, Q>(&f, force);
+                let flow_in = |place| Flowing::of::<L, T, Q>(populations, place, forces.at(place));
+                let wave = inner.wave(known, (excess, self.seen.missed), normal, flow_in);
+                let (excess, velocity) = self.fill::<L, Q>(&mut f, wave.velocity, wave.excess, force);
+                sums.add(normal.inwards(excess, velocity), &wave, inner.share);
+            } else {
+                self.fill::<L, Q>(&mut f, velocity, excess, force);
+            }
+            populations.set_entering::<L, Q>(place, f.map(T::of));
+        }
+        sums
+    }
+
+    /// What travels inwards, mean over the cells of a face that absorbs and those within.
+    fn inwards<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        populations: &Populations<T>,
+        forces: Force<'_, T>,
+    ) -> f64 {
+        let of = |place| Flowing::of::<L, T, Q>(populations, place, forces.at(place)).inwards(self.normal());
+        let pairs = self.cells.iter().zip(&self.inner);
+        let pairs = pairs.filter_map(|(cell, inner)| Some([cell.place, inner.as_ref()?.place]));
+        let (sum, count) = pairs.fold((0.0, 0), |(sum, count), [at_face, within]| {
+            (sum + 0.5 * (of(at_face) + of(within)), count + 1)
+        });
+        sum / f64::from(count.max(1))
     }
 
     /// Density times one less the velocity inwards, which the known populations give.

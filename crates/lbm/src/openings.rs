@@ -1,6 +1,6 @@
 //! From open faces of a setup to lists of cells.
 
-use crate::absorbing::{Inner, Side};
+use crate::absorbing::{Inner, Seen, Side};
 use crate::edges::{EdgeCell, OpenEdge};
 use crate::lattice::Lattice;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of};
@@ -108,6 +108,7 @@ impl<D: Dim> Lister<'_, D> {
             scheme: face.scheme()?,
             cells: cells.collect(),
             inner,
+            seen: Seen::default(),
         })
     }
 
@@ -184,7 +185,10 @@ impl<D: Dim> Lister<'_, D> {
         let (at, count) = (cell[axis] as i64 + way, self.setup.cells[axis] as i64);
         if !(0..count).contains(&at) {
             match &self.setup.faces[axis][usize::from(way == 1)] {
-                Face::Wall(velocity) => {
+                face @ (Face::Wall(_) | Face::WallProfile(_)) => {
+                    let to_wall = D::Vec::along(axis, 0.5 * self.setup.spacing * way as f64);
+                    let point = Domain::of(self.setup).centre(cell.map(|x| x as i64)) + to_wall;
+                    let velocity = face.wall_velocity(point).unwrap_or_default();
                     return Side::Wall(velocity.padded().map(|c| c / self.setup.lattice_speed()));
                 }
                 Face::Periodic => {}

@@ -6,9 +6,10 @@
 //! two rows, while they lie in cache. Links of the rows at the ends of slabs follow, then the second step
 //! there. Bits are those of one step at a time: the same numbers go through the same operations.
 
+use crate::body_force::ForceField;
 use crate::collision::{Parameters, Parts};
 use crate::lattice::Lattice;
-use crate::populations::{Grid, Layout, Populations, Runs, Slab, collide_runs};
+use crate::populations::{Grid, Layout, Populations, Row, Runs, Slab, collide_runs};
 use crate::real::Real;
 use crate::rows::{RowLinks, Spot};
 use granular_core::blocks::{Blocks, PerBlock};
@@ -45,18 +46,18 @@ impl<T: Real, const Q: usize> Window<'_, T, Q> {
     fn collide<L: Lattice<Q>, P: Parts>(
         &mut self,
         (grid, layout): (&Grid, Layout),
-        (row, runs): (usize, &Runs),
+        cells: Row<'_, T>,
         parameters: &Parameters<T>,
         bound: T,
     ) -> bool {
         let mut planes = self.planes.each_mut().map(Some);
         let mut starts = [0; Q];
         let mut by_direction: [&mut [T]; Q] = std::array::from_fn(|i| {
-            let spot = grid.spot(grid.entering::<L, Q>(layout, grid.row_place(row), i));
+            let spot = grid.spot(grid.entering::<L, Q>(layout, grid.row_place(cells.row), i));
             starts[i] = spot.place as usize - self.start;
             &mut **planes[spot.plane as usize].take().expect("each direction has a plane of its own")
         });
-        collide_runs::<L, T, P, Q>(&mut by_direction, starts, runs.of_row(row), parameters, bound)
+        collide_runs::<L, T, P, Q>(&mut by_direction, starts, cells, parameters, bound)
     }
 }
 
@@ -68,13 +69,14 @@ fn rows_of_slab(rows: usize, size: usize, block: usize) -> [Range<usize>; 3] {
 }
 
 impl<T: Real> Populations<T> {
-    /// Two steps from the natural layout, with `links` between. Those after the second step are left to the caller. Returns
-    /// whether any population at rest is not finite or larger than `bound` after either.
+    /// Two steps from the natural layout, each with parameters of its own, with `links` between. Those after the second step
+    /// are left to the caller. Returns whether any population at rest is not finite or larger than `bound` after either.
     pub(crate) fn two_steps<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
         runs: &Runs,
         links: &RowLinks<T>,
-        parameters: &Parameters<T>,
+        field: &ForceField<T>,
+        [first, second]: &[Parameters<T>; 2],
         bound: T,
     ) -> bool {
         debug_assert!(self.layout == Layout::Natural && L::VELOCITIES.iter().all(|c| c[2] == 0));
@@ -90,12 +92,13 @@ impl<T: Real> Populations<T> {
             let mut window = Window { planes: slab.planes, start };
             let mut worst = false;
             for row in all {
-                worst |= window.collide::<L, P>(natural, (row, runs), parameters, bound);
+                worst |= window.collide::<L, P>(natural, Row { row, runs, field }, first, bound);
                 if row > 0 && linked.contains(&(row - 1)) {
                     links.apply(row - 1, &mut window);
                 }
                 if row > 1 && inner.contains(&(row - 2)) {
-                    worst |= window.collide::<L, P>(turned, (row - 2, runs), parameters, bound);
+                    let cells = Row { row: row - 2, runs, field };
+                    worst |= window.collide::<L, P>(turned, cells, second, bound);
                 }
             }
             beyond.0[0] = worst;
@@ -106,13 +109,14 @@ impl<T: Real> Populations<T> {
             all.filter(|row| !linked.contains(row)).for_each(|row| links.apply(row, &mut everywhere));
         }
         let is_beyond = self.beyond[..Blocks::new(rows, size).count()].contains(&true);
-        self.late_rows::<L, P, Q>(runs, parameters, bound) | is_beyond
+        self.late_rows::<L, P, Q>(runs, field, second, bound) | is_beyond
     }
 
     /// The second step where slabs meet, in blocks as long as slabs that begin before their late rows.
     fn late_rows<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
         runs: &Runs,
+        field: &ForceField<T>,
         parameters: &Parameters<T>,
         bound: T,
     ) -> bool {
@@ -131,8 +135,8 @@ impl<T: Real> Populations<T> {
             for row in first..range.end - early {
                 let [_, _, inner] = rows_of_slab(rows, size, row / size);
                 if !inner.contains(&row) {
-                    let row = (row, runs);
-                    beyond.0[0] |= window.collide::<L, P>((grid, Layout::Turned), row, parameters, bound);
+                    let (from, cells) = ((grid, Layout::Turned), Row { row, runs, field });
+                    beyond.0[0] |= window.collide::<L, P>(from, cells, parameters, bound);
                 }
             }
         });

@@ -10,6 +10,7 @@
 //! in the plane against `i` of the cell behind. A step from there reads from and writes to neighbours and
 //! restores the natural layout.
 
+use crate::body_force::ForceField;
 use crate::collision::{Parameters, Parts};
 use crate::lattice::{Lattice, opposite};
 use crate::pages::Pages;
@@ -256,6 +257,7 @@ impl<T: Real> Populations<T> {
     pub(crate) fn step<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
         runs: &Runs,
+        field: &ForceField<T>,
         parameters: &Parameters<T>,
         bound: T,
     ) -> bool {
@@ -276,8 +278,8 @@ impl<T: Real> Populations<T> {
             let first = block * self.slab;
             for row in first..(first + self.slab).min(runs.rows()) {
                 let starts = [(row - first) * pitch; Q];
-                let runs = runs.of_row(row);
-                worst |= collide_runs::<L, T, P, Q>(&mut slab.planes, starts, runs, parameters, bound);
+                let cells = Row { row, runs, field };
+                worst |= collide_runs::<L, T, P, Q>(&mut slab.planes, starts, cells, parameters, bound);
             }
             beyond.0[0] = worst;
         });
@@ -303,24 +305,34 @@ impl<T: Real> Populations<T> {
     }
 }
 
+/// A row of cells, where fluid is, and the force there if it varies in space.
+#[derive(Clone, Copy)]
+pub(crate) struct Row<'a, T> {
+    pub(crate) row: usize,
+    pub(crate) runs: &'a Runs,
+    pub(crate) field: &'a ForceField<T>,
+}
+
 /// Collides the runs of a row that begins at `starts` in the planes of the directions. Returns whether a population at
 /// rest is not finite or larger than `bound`.
 #[inline]
 pub(crate) fn collide_runs<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
     planes: &mut [&mut [T]; Q],
     starts: [usize; Q],
-    runs: &[[u32; 2]],
+    cells: Row<'_, T>,
     parameters: &Parameters<T>,
     bound: T,
 ) -> bool {
     let mut worst = false;
-    for &[a, b] in runs {
+    for &[a, b] in cells.runs.of_row(cells.row) {
+        let range = a as usize..b as usize;
+        let field = if P::FIELD { cells.field.of_row(cells.row, range.clone()) } else { [&[] as &[T]; 3] };
         let mut planes = planes.iter_mut().zip(starts);
         let mut rows: [&mut [T]; Q] = std::array::from_fn(|_| {
             let (plane, start) = planes.next().expect("one per direction");
-            &mut plane[start + a as usize..start + b as usize]
+            &mut plane[start + range.start..start + range.end]
         });
-        L::collide_row::<T, P>(rows.each_mut().map(|row| &mut **row), parameters);
+        L::collide_row::<T, P>(rows.each_mut().map(|row| &mut **row), field, parameters);
         worst |= is_beyond(rows[0], bound);
     }
     worst

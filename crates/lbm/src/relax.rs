@@ -7,6 +7,32 @@ use crate::collision::{Parameters, Parts};
 use crate::lattice::Lattice;
 use crate::real::Real;
 use granular_core::Dim;
+use std::ops::Range;
+
+/// The forces of some cells along each axis; none without a field.
+#[inline(always)]
+pub(crate) fn field_of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
+    field: [&[T]; 3],
+    cells: Range<usize>,
+) -> [&[T]; 3] {
+    std::array::from_fn(|axis| if P::FIELD && axis < L::Dim::N { &field[axis][cells.clone()] } else { &[] })
+}
+
+/// Parameters of a cell that has a force of its own.
+#[inline(always)]
+pub(crate) fn with_field<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
+    p: &Parameters<T>,
+    field: [&[T]; 3],
+    cell: usize,
+) -> Parameters<T> {
+    let mut here = *p;
+    if P::FIELD {
+        for axis in 0..L::Dim::N {
+            here.force[axis] += p.field_factor * field[axis][cell];
+        }
+    }
+    here
+}
 
 /// Squared norm of a stress.
 #[inline(always)]

@@ -4,6 +4,7 @@ use crate::links::{Both, Copies, CutLink, Cuts, entering_cut};
 use crate::pair::Window;
 use crate::populations::{Grid, Layout};
 use crate::real::Real;
+use crate::wall_faces::{SlipLink, entering_slip};
 
 /// Where a number lies: in which plane, and where in it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,6 +59,14 @@ struct RowCopy<T> {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
+struct RowSlip<T> {
+    to: Spot,
+    from: [Spot; 2],
+    shares: [T; 2],
+    added: T,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
 struct RowCut<T> {
     to: Spot,
     from: [Spot; 3],
@@ -71,6 +80,7 @@ struct RowCut<T> {
 pub(crate) struct RowLinks<T> {
     copies: ByRow<RowCopy<T>>,
     cuts: ByRow<RowCut<T>>,
+    slips: ByRow<RowSlip<T>>,
 }
 
 impl<T: Real> RowLinks<T> {
@@ -87,6 +97,11 @@ impl<T: Real> RowLinks<T> {
                 take(row(to), RowCopy { to: spot(to), from: spot(from), added });
             }
         });
+        self.slips.fill(grid.cells[1], |take| {
+            for &SlipLink { to, from, shares, added } in &copies.slipping {
+                take(row(to), RowSlip { to: spot(to), from: from.map(spot), shares, added });
+            }
+        });
         self.cuts.fill(grid.cells[1], |take| {
             for cut in obstacles.iter().flat_map(|obstacle| &obstacle.links) {
                 let &CutLink { to, from, weights, added, .. } = cut;
@@ -100,6 +115,10 @@ impl<T: Real> RowLinks<T> {
         for link in self.copies.of_row(row) {
             window.set(link.to, window.get(link.from) + link.added);
         }
+        for link in self.slips.of_row(row) {
+            let left = link.from.map(|from| window.get(from));
+            window.set(link.to, entering_slip(left, link.shares, link.added));
+        }
         for link in self.cuts.of_row(row) {
             window
                 .set(link.to, entering_cut(link.from.map(|from| window.get(from)), link.weights, link.added));
@@ -107,6 +126,6 @@ impl<T: Real> RowLinks<T> {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.copies.bytes() + self.cuts.bytes()
+        self.copies.bytes() + self.cuts.bytes() + self.slips.bytes()
     }
 }

@@ -6,12 +6,17 @@ use granular_core::{Dim, Linear, Vector};
 pub trait Shape<D: Dim>: Send + Sync {
     /// Whether a point \[m\] lies inside.
     fn contains(&self, point: D::Vec) -> bool;
-    /// Corners of a box \[m\] around it.
+    /// Corners of a box \[m\] around it. A body without end along an axis is not repeated through periodic faces there.
     fn bounds(&self) -> (D::Vec, D::Vec);
     /// Centre \[m\], about which torques are taken.
     fn centre(&self) -> D::Vec {
         let (low, high) = self.bounds();
         (low + high) * 0.5
+    }
+    /// Largest distance \[m\] of its surface from its centre, or more: how fast a turning body moves.
+    fn reach(&self) -> f64 {
+        let (low, high) = self.bounds();
+        0.5 * (high - low).length()
     }
     /// Share of the way from `outside` to `inside` \[m\] at which the surface is met, in (0, 1\].
     fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
@@ -78,6 +83,19 @@ impl<D: Dim> Shape<D> for Block<D> {
 
     fn bounds(&self) -> (D::Vec, D::Vec) {
         (self.low, self.high)
+    }
+
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        // The last of its faces that is passed.
+        let passed = (0..D::N).map(|axis| {
+            let [from, to] = [outside, inside].map(|point| point.component(axis));
+            match from {
+                _ if from < self.low.component(axis) => (self.low.component(axis) - from) / (to - from),
+                _ if from > self.high.component(axis) => (self.high.component(axis) - from) / (to - from),
+                _ => 0.0,
+            }
+        });
+        passed.fold(f64::MIN_POSITIVE, f64::max).min(1.0)
     }
 }
 

@@ -123,8 +123,7 @@ fn show_gauges<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, sink:
 
 fn show_fields<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, sink: &mut dyn FieldSink) {
     if sink.wants("pressure") {
-        let values = lbm.map(|cell| lbm.flow(cell).map_or(0.0, |flow| flow.pressure));
-        sink.field("pressure", "Pa", FieldRef::Scalar(&values));
+        sink.field("pressure", "Pa", FieldRef::Scalar(&lbm.pressures()));
     }
     if sink.wants("velocity") {
         sink.field("velocity", "m/s", L::Dim::vector_field(&lbm.velocities()));
@@ -181,7 +180,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         self.setup.cells.iter().product()
     }
 
-    fn cell(&self, index: usize) -> [usize; 3] {
+    pub(crate) fn cell(&self, index: usize) -> [usize; 3] {
         let [nx, ny, _] = self.setup.cells;
         [index % nx, index / nx % ny, index / (nx * ny)]
     }

@@ -68,20 +68,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     /// Largest speed that faces, obstacles and the setup name \[m/s\].
     pub fn largest_expected_speed(&self) -> f64 {
         let setup = &self.setup;
-        let walls = setup.faces.iter().flatten().map(|face| match face {
-            Face::Wall(velocity) => velocity.length(),
-            _ => 0.0,
-        });
         let entering = self
             .beyond
             .open
             .given_velocities()
             .map(|velocity| velocity.iter().map(|c| c * c).sum::<f64>().sqrt() * setup.lattice_speed());
-        let bodies = setup.obstacles.iter().map(|body| {
-            let (low, high) = body.shape.bounds();
-            body.velocity.length() + body.spin.length() * 0.5 * (high - low).length()
-        });
-        walls.chain(entering).chain(bodies).fold(setup.expected_speed, f64::max)
+        let bodies = setup
+            .obstacles
+            .iter()
+            .map(|body| body.velocity.length() + body.spin.length() * body.shape.reach());
+        entering.chain(bodies).fold(setup.expected_speed.max(setup.fastest_wall()), f64::max)
     }
 
     fn report_limits(&self, report: &mut Limits) {
@@ -154,7 +150,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             + self.row_links.bytes()
             + self.beyond.obstacles.iter().map(|cuts| cuts.bytes()).sum::<usize>()
             + self.beyond.open.bytes();
-        let bytes = populations + links + self.runs.bytes() + 2 * self.cover.capacity();
+        let bytes = populations + links + self.field.bytes() + self.runs.bytes() + 2 * self.cover.capacity();
         let mut left_out = Vec::new();
         let mut note = |is_off: bool, text: &str| {
             if is_off {
@@ -245,6 +241,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         to.put("positions of obstacles", &motions().map(|motion| motion.position).collect::<Vec<_>>());
         to.put("velocities of obstacles", &motions().map(|motion| motion.velocity).collect::<Vec<_>>());
         to.put("spins of obstacles", &motions().map(|motion| motion.spin).collect::<Vec<_>>());
+        let seen = self.beyond.open.seen();
+        if !seen.is_empty() {
+            to.put("what absorbing faces saw", &seen);
+        }
+        self.save_faces(to);
     }
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -256,11 +257,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         let steps = from.one("steps")?;
         let acceleration: <L::Dim as Dim>::Vec = from.one("acceleration")?;
         let motions = self.saved_motions(from)?;
+        self.restore_faces(from)?;
         self.place_obstacles(motions);
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;
+        let absorbing = self.beyond.open.seen().len();
+        let seen: Vec<[f64; 2]> =
+            if absorbing > 0 { from.array_of("what absorbing faces saw", absorbing)? } else { Vec::new() };
         let are_finite = [
+            ("what absorbing faces saw", seen.iter().flatten().all(|c| c.is_finite())),
             ("acceleration", acceleration.is_finite()),
             ("force and torque on obstacles", loads.iter().flatten().all(|c| c.is_finite())),
         ];
@@ -268,7 +274,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             let found = "a number that is not finite".to_owned();
             return Err(SnapshotError::Damaged { place: format!("solver/{name}"), found });
         }
+        self.steps = steps;
         self.set_acceleration(acceleration);
+        self.follow_body_force();
         let places: Vec<usize> = self.fluid().map(|(_, place)| place).collect();
         for (place, values) in places.into_iter().zip(populations.chunks_exact(Q)) {
             let values = std::array::from_fn(|i| values[i]);
@@ -277,7 +285,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         for (body, [a, b, c, d, e, f]) in self.beyond.obstacles.iter_mut().zip(loads) {
             (body.force, body.torque) = ([a, b, c], [d, e, f]);
         }
-        self.steps = steps;
+        self.beyond.open.set_seen(&seen);
         Ok(())
     }
 

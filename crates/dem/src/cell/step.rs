@@ -30,7 +30,8 @@ impl<D: Dim> Dem<D> {
             return Err(SetupError::new("width of the cell over the reach of a pair", ratio, "at least 1.5"));
         }
         if !self.traffic.is_empty() {
-            return Err(SetupError::new("inlets and outlets in a periodic cell", 1.0, "none"));
+            let count = self.traffic.doors() as f64;
+            return Err(SetupError::new("number of inlets and outlets beside a periodic cell", count, "0"));
         }
         let shares = cell.edges.inverse();
         for &position in &self.grains.position {

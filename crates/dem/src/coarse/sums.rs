@@ -2,6 +2,7 @@
 //! and contacts in their order, so that the bits do not depend on the number of threads.
 
 use super::grid::CoarseGrid;
+use super::images::{Images, Seen};
 use super::spline::{Weights, gauss, touches};
 use crate::contacts::Partner;
 use crate::dem::Dem;
@@ -106,7 +107,7 @@ impl<D: Dim> Sums<D> {
             fabric: vec![Fabric::default(); count(wanted.fabric)],
             outside: 0.0,
         };
-        let places: Vec<[f64; 3]> = dem.grains.position.iter().map(|&x| grid.place(x)).collect();
+        let seen = Images::of(dem, grid, 0.0).grains(dem);
         let branches = if wanted.contacts { branches(dem, grid) } else { Vec::new() };
         let normals = if wanted.fabric { normals(dem) } else { Vec::new() };
         let blocks = Blocks::new(grid.count(), grid.layer() * grid.layers().div_ceil(BLOCKS));
@@ -116,22 +117,21 @@ impl<D: Dim> Sums<D> {
             let range = blocks.range(block);
             let layers = range.start / grid.layer()..range.end / grid.layer();
             let part = Part { grid, layers, start: range.start };
-            part.grains(dem, &places, bulk);
+            part.grains(dem, &seen, bulk);
             if wanted.slopes {
-                part.slopes(dem, &places, slopes);
+                part.slopes(dem, &seen, slopes);
             }
             if wanted.kinetic {
-                part.kinetic(dem, &places, bulk, kinetic);
+                part.kinetic(dem, &seen, bulk, kinetic);
             }
             if wanted.contacts {
                 part.contacts(&branches, pushes);
             }
             if wanted.fabric {
-                part.fabric(&places, &normals, fabric);
+                part.fabric(&seen, &normals, fabric);
             }
         });
-        let outside = |(&place, mass): (&[f64; 3], &f64)| mass * (1.0 - grid.share(place));
-        sums.outside = places.iter().zip(&dem.grains.mass).map(outside).sum();
+        sums.outside = outside(dem, grid, &seen);
         sums
     }
 }
@@ -141,10 +141,10 @@ impl<D: Dim> Part<'_, D> {
         touches(between, self.grid.width(), self.layers.start, self.layers.end)
     }
 
-    /// Places that reach into this part, with their index.
-    fn near<'a>(&'a self, places: &'a [[f64; 3]]) -> impl Iterator<Item = (usize, [f64; 3])> + 'a {
+    /// What reaches into this part.
+    fn near<'a>(&'a self, seen: &'a [Seen<D>]) -> impl Iterator<Item = &'a Seen<D>> + 'a {
         let last = D::N - 1;
-        places.iter().copied().enumerate().filter(move |(_, place)| self.reaches([place[last]; 2]))
+        seen.iter().filter(move |seen| self.reaches([seen.place[last]; 2]))
     }
 
     /// Calls `add` with the index within the part and the weight of every cell that a kernel reaches.
@@ -165,12 +165,12 @@ impl<D: Dim> Part<'_, D> {
         }
     }
 
-    fn grains(&self, dem: &Dem<D>, places: &[[f64; 3]], bulk: &mut [Bulk<D>]) {
+    fn grains(&self, dem: &Dem<D>, seen: &[Seen<D>], bulk: &mut [Bulk<D>]) {
         let grains = &dem.grains;
-        for (index, place) in self.near(places) {
-            let (mass, radius) = (grains.mass[index], grains.radius[index]);
+        for &Seen { grain, place, velocity } in self.near(seen) {
+            let (mass, radius) = (grains.mass[grain], grains.radius[grain]);
             let (volume, diameter) = (D::ball_volume(radius), 2.0 * radius * mass);
-            let momentum = grains.velocity[index] * mass;
+            let momentum = velocity * mass;
             self.spread(&self.grid.weights(place), |cell, weight| {
                 let bulk = &mut bulk[cell];
                 bulk.number += weight;
@@ -182,11 +182,10 @@ impl<D: Dim> Part<'_, D> {
         }
     }
 
-    fn slopes(&self, dem: &Dem<D>, places: &[[f64; 3]], slopes: &mut [Slopes<D>]) {
-        let grains = &dem.grains;
-        for (index, place) in self.near(places) {
-            let mass = grains.mass[index];
-            let momentum = grains.velocity[index] * mass;
+    fn slopes(&self, dem: &Dem<D>, seen: &[Seen<D>], slopes: &mut [Slopes<D>]) {
+        for &Seen { grain, place, velocity } in self.near(seen) {
+            let mass = dem.grains.mass[grain];
+            let momentum = velocity * mass;
             let (weights, along) = (self.grid.weights(place), self.grid.slopes(place));
             for axis in 0..D::N {
                 let mut mixed = weights;
@@ -200,11 +199,10 @@ impl<D: Dim> Part<'_, D> {
     }
 
     /// About the mean velocity of each cell: nothing is lost in a difference of large numbers.
-    fn kinetic(&self, dem: &Dem<D>, places: &[[f64; 3]], bulk: &[Bulk<D>], kinetic: &mut [SymmetricTensor]) {
-        let grains = &dem.grains;
+    fn kinetic(&self, dem: &Dem<D>, seen: &[Seen<D>], bulk: &[Bulk<D>], kinetic: &mut [SymmetricTensor]) {
         let mean: Vec<D::Vec> = bulk.iter().map(|bulk| mean_velocity(bulk).unwrap_or_default()).collect();
-        for (index, place) in self.near(places) {
-            let (mass, velocity) = (grains.mass[index], grains.velocity[index]);
+        for &Seen { grain, place, velocity } in self.near(seen) {
+            let mass = dem.grains.mass[grain];
             self.spread(&self.grid.weights(place), |cell, weight| {
                 let about = DVec3::from((velocity - mean[cell]).padded());
                 kinetic[cell] += SymmetricTensor::dyad(about, about) * (weight * mass);
@@ -240,9 +238,9 @@ impl<D: Dim> Part<'_, D> {
         }
     }
 
-    fn fabric(&self, places: &[[f64; 3]], normals: &[Fabric], fabric: &mut [Fabric]) {
-        for (index, place) in self.near(places) {
-            let own = normals[index];
+    fn fabric(&self, seen: &[Seen<D>], normals: &[Fabric], fabric: &mut [Fabric]) {
+        for &Seen { grain, place, .. } in self.near(seen) {
+            let own = normals[grain];
             self.spread(&self.grid.weights(place), |cell, weight| {
                 fabric[cell].contacts += weight * own.contacts;
                 fabric[cell].normals += own.normals * weight;
@@ -273,10 +271,21 @@ pub(super) fn mean_velocity<D: Dim>(bulk: &Bulk<D>) -> Option<D::Vec> {
     (bulk.mass > 0.0).then(|| bulk.momentum * (1.0 / bulk.mass))
 }
 
+/// Mass that the kernel spreads beyond the grid \[kg\]; images of a grain may be on the grid where it is not.
+fn outside<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>, seen: &[Seen<D>]) -> f64 {
+    let mut missing = vec![1.0; dem.len()];
+    for seen in seen {
+        missing[seen.grain] -= grid.share(seen.place);
+    }
+    missing.iter().zip(&dem.grains.mass).map(|(missing, mass)| mass * f64::max(*missing, 0.0)).sum()
+}
+
 /// Branches of all contacts. They are laid from the first grain along the normal, so that a neighbour across a periodic
-/// side is met where it acts.
+/// side is met where it acts, and from each of its images.
 fn branches<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>) -> Vec<Branch<D>> {
     let mut branches = Vec::new();
+    let longest = 2.0 * dem.grains.radius_range().1;
+    let images = Images::of(dem, grid, longest);
     dem.visit_contacts(&mut |contact| {
         let radius = dem.grains.radius[contact.first];
         let (length, wall) = match contact.partner {
@@ -286,11 +295,10 @@ fn branches<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>) -> Vec<Branch<D>> {
         };
         let (arm, position) = (contact.normal * length, dem.grains.position[contact.first]);
         let [arm3, force] = [arm, contact.force].map(|v| DVec3::from(v.padded()));
-        branches.push(Branch {
-            from: grid.place(position - arm),
-            to: grid.place(position),
-            product: SymmetricTensor::dyad(force, arm3),
-            wall,
+        let product = SymmetricTensor::dyad(force, arm3);
+        images.visit(position, |way| {
+            let (from, to) = (grid.place(position + way - arm), grid.place(position + way));
+            branches.push(Branch { from, to, product, wall });
         });
     });
     branches

@@ -5,6 +5,7 @@
 
 mod cell;
 mod coarse;
+mod coarse_cell;
 mod conservation;
 mod contract;
 mod energy;
@@ -26,6 +27,7 @@ mod stability;
 mod surfaces;
 mod traffic;
 mod twisting;
+mod wall_numbers;
 mod wide;
 
 #[global_allocator]

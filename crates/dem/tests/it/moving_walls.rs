@@ -109,7 +109,8 @@ fn a_ball_on_a_turntable_that_holds_it_goes_round() {
 fn a_servo_presses_with_its_target() {
     let mut materials = Materials::new();
     let glass = materials.add(Material { restitution: 0.3, ..Material::default() }).unwrap();
-    let servo = Servo { direction: -DVec2::Y, force: 3.0, mass: 0.05, damping: 30.0, max_speed: 0.1 };
+    let servo =
+        Servo { direction: -DVec2::Y, force: 3.0, pressure: None, mass: 0.05, damping: 30.0, max_speed: 0.1 };
     let lid = Wall::plane("lid", DVec2::new(0.0, 2.2e-3), -DVec2::Y, glass).unwrap();
     let floor = Wall::plane("floor", DVec2::ZERO, DVec2::Y, glass).unwrap();
     let walls = vec![floor, lid.moving(WallMotion::Servo(servo))];
@@ -136,7 +137,8 @@ fn a_servo_on_a_spring_swings_at_the_closed_form() {
     let mut materials = Materials::new();
     let glass = materials.add(Material { restitution: 1.0, friction: 0.0, ..Material::default() }).unwrap();
     let (mass, force) = (10.0, 1.0);
-    let servo = Servo { direction: -DVec2::Y, force, mass, damping: 0.0, max_speed: f64::INFINITY };
+    let servo =
+        Servo { direction: -DVec2::Y, force, pressure: None, mass, damping: 0.0, max_speed: f64::INFINITY };
     let lid = Wall::plane("lid", DVec2::new(0.0, 2e-3), -DVec2::Y, glass).unwrap();
     let floor = Wall::plane("floor", DVec2::ZERO, DVec2::Y, glass).unwrap();
     let walls = vec![floor, lid.moving(WallMotion::Servo(servo))];
@@ -194,6 +196,7 @@ fn shaken<D: Dim>(lattice: Lattice, material: Material, options: Options, slowne
         WallMotion::Servo(Servo {
             direction: D::Vec::along(0, -1.0),
             force: 20.0,
+            pressure: None,
             mass: 0.02,
             damping: 5.0,
             max_speed: 1.0,

@@ -7,7 +7,7 @@ use crate::scene::boundaries::{InletSpec, MotionSpec, OutletSpec};
 use crate::scene::{Change, Scene};
 use granular_core::units::Length;
 use granular_core::{Dim, Linear, Spin, Vector};
-use granular_dem::{Dem, Inlet, Outlet, Servo, Shape, Wall, WallMotion};
+use granular_dem::{Dem, Inlet, Outlet, PressureBetween, Servo, Shape, Wall, WallMotion};
 
 /// Steps between two looks at what is due at inlets.
 const STEPS_PER_LOOK: u64 = granular_dem::STEPS_PER_LOOK;
@@ -39,13 +39,13 @@ pub(super) struct Surroundings<'a> {
 /// Gives a wall its motion, if that can be.
 pub(super) fn set_moving<D: Dim>(
     path: &str,
-    wall: &mut Wall<D>,
-    spec: Option<&MotionSpec>,
+    (walls, index): (&mut [Wall<D>], usize),
+    spec: &MotionSpec,
     around: &Surroundings<'_>,
     problems: &mut Problems,
 ) {
-    let Some(spec) = spec else { return };
-    let Some(motion) = motion::<D>(path, wall, spec, around, problems) else { return };
+    let Some(motion) = motion::<D>(path, (walls, index), spec, around, problems) else { return };
+    let wall = &mut walls[index];
     if let Err(error) = motion.check(&wall.name) {
         let value = format!("a motion that cannot be: {} is {}", error.what, error.value);
         problems.add(format!("{path}.moves"), value, error.allowed, "");
@@ -57,7 +57,7 @@ pub(super) fn set_moving<D: Dim>(
 
 fn motion<D: Dim>(
     path: &str,
-    wall: &Wall<D>,
+    (walls, index): (&[Wall<D>], usize),
     spec: &MotionSpec,
     around: &Surroundings<'_>,
     problems: &mut Problems,
@@ -82,7 +82,9 @@ fn motion<D: Dim>(
             };
             WallMotion::Turning { about, spin }
         }
-        MotionSpec::Servo { .. } => WallMotion::Servo(servo::<D>(&path, wall, spec, around, problems)?),
+        MotionSpec::Servo { .. } => {
+            WallMotion::Servo(servo::<D>(&path, (walls, index), spec, around, problems)?)
+        }
     })
 }
 
@@ -97,14 +99,16 @@ fn spin_of<D: Dim>(rates: &[f64]) -> Option<D::Spin> {
 
 fn servo<D: Dim>(
     path: &str,
-    wall: &Wall<D>,
+    (walls, index): (&[Wall<D>], usize),
     spec: &MotionSpec,
     around: &Surroundings<'_>,
     problems: &mut Problems,
 ) -> Option<Servo<D>> {
-    let MotionSpec::Servo { direction, force, pressure, area, mass, damping, max_speed } = spec else {
+    let MotionSpec::Servo { direction, force, pressure, area, between, mass, damping, max_speed } = spec
+    else {
         return None;
     };
+    let wall = &walls[index];
     let direction = match (direction.as_slice(), &wall.shape) {
         ([], Shape::Plane { normal, .. }) => *normal,
         ([], _) => {
@@ -121,12 +125,16 @@ fn servo<D: Dim>(
             problems.vector::<D, _>(&format!("{path}.direction"), &numbers)?
         }
     };
-    let force = match (force, pressure, area) {
-        (Some(force), None, None) => force.value(),
-        (None, Some(pressure), Some(area)) => pressure.value() * area,
+    let (force, pressure) = match (force, pressure, area, between.as_slice()) {
+        (Some(force), None, None, []) => (force.value(), None),
+        (None, Some(pressure), Some(area), []) => (pressure.value() * area, None),
+        (None, Some(pressure), None, [_, ..]) => {
+            let walls = facing::<D>(path, walls, between, problems)?;
+            (0.0, Some(PressureBetween { pressure: pressure.value(), walls }))
+        }
         _ => {
-            let hint = "a force, or a pressure with the area on which it acts";
-            problems.add(path, "a servo", "force: .., or pressure: .. with area: ..", hint);
+            let hint = "a force, or a pressure with the area or the walls between which it acts";
+            problems.add(path, "a servo", "force: .., or pressure: .. with area: .. or between: ..", hint);
             return None;
         }
     };
@@ -135,10 +143,45 @@ fn servo<D: Dim>(
     Some(Servo {
         direction: direction * (1.0 / direction.length()),
         force,
+        pressure,
         mass,
         damping: damping.unwrap_or((mass * stiffness).sqrt()),
         max_speed: max_speed.map_or(f64::INFINITY, |speed| speed.value()),
     })
+}
+
+/// Indices of planes that face one another, from pairs of names.
+fn facing<D: Dim>(
+    path: &str,
+    walls: &[Wall<D>],
+    pairs: &[Vec<String>],
+    problems: &mut Problems,
+) -> Option<[[usize; 2]; 2]> {
+    let path = format!("{path}.between");
+    if pairs.len() != D::N - 1 {
+        let allowed = if D::N == 2 { "one pair of planes" } else { "two pairs of planes" };
+        problems.add(path, format!("a list of {}", pairs.len()), allowed, "such as [[\"left\", \"right\"]]");
+        return None;
+    }
+    let mut found = [[0; 2]; 2];
+    for (indices, pair) in found.iter_mut().zip(pairs) {
+        let index = |name: &String| walls.iter().position(|wall| wall.name == *name);
+        let known: Option<Vec<usize>> = pair.iter().map(index).collect();
+        let planes = known.and_then(|known| <[usize; 2]>::try_from(known).ok()).filter(|known| {
+            let [a, b] = known.map(|index| &walls[index].shape);
+            matches!((a, b), (Shape::Plane { normal, point }, Shape::Plane { normal: against, point: other })
+                if normal.dot(*against) < -1.0 + 1e-9 && (*other - *point).dot(*normal) > 0.0)
+        });
+        let Some(planes) = planes else {
+            let names = walls.iter().filter(|wall| matches!(wall.shape, Shape::Plane { .. }));
+            let names: Vec<&str> = names.map(|wall| wall.name.as_str()).collect();
+            let allowed = format!("two planes that face one another, of: {}", names.join(", "));
+            problems.add(path, format!("[{}]", pair.join(", ")), allowed, "");
+            return None;
+        };
+        *indices = planes;
+    }
+    Some(found)
 }
 
 /// A lattice of held grains in a box, out of place by up to `scatter` along each axis.

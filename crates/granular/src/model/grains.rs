@@ -1,7 +1,9 @@
 //! Grains and walls for the discrete element method.
 
+pub(super) mod falling;
 mod pairs;
 mod stiffness;
+mod whole;
 
 use super::boundaries::{self, Surroundings};
 use super::walls::{self, Beside};
@@ -10,6 +12,7 @@ use crate::failure::Failure;
 use crate::sample_file::SavedSample;
 use crate::scene::{Change, FigureSpec, Sample, Scene, Stage, Writer};
 use crate::scene_file::SceneProblem;
+pub(crate) use falling::Whereabouts;
 use granular_core::units::Acceleration;
 use granular_core::{D2, D3, Dim, Simulation, Vector};
 use granular_dem::spec::DemSpec;
@@ -90,8 +93,12 @@ pub(super) fn build<D: Dim>(
             None
         }
     };
-    if let Some(sample) = &sample {
-        stiffness::derive::<D>(scene, &mut materials, &sample.grains, &mut problems);
+    let here = || sample.iter().flat_map(|sample| &sample.grains);
+    let whole = whole::Whole::of::<D>(scene, here());
+    if sample.is_some()
+        && let Some(radius) = whole.mean_radius()
+    {
+        stiffness::derive::<D>(scene, &mut materials, radius, &mut problems);
     }
     let column = sample.as_ref().and_then(|sample| sample.column);
     // A column that cannot be built has been blamed already; the walls beside it are not.
@@ -101,17 +108,12 @@ pub(super) fn build<D: Dim>(
         }
         _ => column.map_or(Beside::Nothing, Beside::Column),
     };
-    let mass = |grain: &granular_dem::Grain<D>| {
-        materials.list.get(grain.material).density * D::ball_volume(grain.radius)
-    };
-    let all = || sample.iter().flat_map(|sample| &sample.grains);
-    let (grains_mass, top) = (
-        all().map(mass).sum(),
-        all().map(|grain| grain.position.component(D::UP) + grain.radius).fold(0.0, f64::max),
-    );
+    let top = here().map(|grain| grain.position.component(D::UP) + grain.radius).fold(0.0, f64::max);
+    let grains_mass = whole.mass::<D>(here(), &materials);
     let around = Surroundings { scene, materials: &materials, grains_mass, top };
     let walls = walls::walls::<D>(&scene.walls, beside, &around, &mut problems);
     let of_inlets = inlet_materials(scene, &materials, &mut problems);
+    refuse_traffic_in_a_cell(scene, &mut problems);
     let cell = super::cell::cell::<D>(scene, sample.as_ref(), &mut problems);
     let stages = actions::<D>(scene, &walls.openings, &materials, &mut problems);
     check_wall_names(scene, &walls.list, &mut problems);
@@ -146,6 +148,15 @@ pub(super) fn build<D: Dim>(
         column,
         up: D::UP,
     })
+}
+
+/// A periodic cell holds the grains that it began with.
+fn refuse_traffic_in_a_cell(scene: &Scene, problems: &mut Problems) {
+    let lists = [("inlets", scene.inlets.len()), ("outlets", scene.outlets.len())];
+    for (path, count) in lists.into_iter().filter(|(_, count)| scene.cell.is_some() && *count > 0) {
+        let hint = "what leaves a cell through one face comes back through the other: fill it by its `sample`, or leave out `cell`";
+        problems.add(path, format!("{count} in a scene with a periodic cell"), "none beside `cell`", hint);
+    }
 }
 
 /// Materials of inlets by name, or what is wrong with them.

@@ -37,6 +37,7 @@ pub(crate) fn walls<D: Dim>(
     problems: &mut Problems,
 ) -> BuiltWalls<D> {
     let mut built = BuiltWalls { list: Vec::new(), openings: Vec::new() };
+    let mut moving = Vec::new();
     for (k, spec) in specs.iter().enumerate() {
         let path = format!("walls.{k}");
         let Some(material) = around.materials.find(&format!("{path}.material"), spec.material(), problems)
@@ -55,9 +56,9 @@ pub(crate) fn walls<D: Dim>(
         };
         let before = built.list.len();
         match shapes::<D>(&path, spec, (column, around), material, problems) {
-            Ok(mut list) => {
-                for wall in &mut list {
-                    boundaries::set_moving(&path, wall, spec.moves(), around, problems);
+            Ok(list) => {
+                if let Some(motion) = spec.moves() {
+                    moving.extend((0..list.len()).map(|index| (path.clone(), before + index, motion)));
                 }
                 built.list.extend(list);
             }
@@ -70,6 +71,10 @@ pub(crate) fn walls<D: Dim>(
             let names = built.list[before..].iter().map(|wall| wall.name.clone());
             built.openings.extend(names.map(|name| (path.clone(), name, stage.to_owned())));
         }
+    }
+    // A motion may name walls that stand further down in the scene.
+    for (path, index, motion) in moving {
+        boundaries::set_moving(&path, (&mut built.list, index), motion, around, problems);
     }
     built
 }
@@ -102,6 +107,10 @@ fn shapes<D: Dim>(
         WallSpec::Tube { name, from, to, radius, .. } => match (point("from", from), point("to", to)) {
             (Some(from), Some(to)) => vec![Wall::tube(name, from, to, radius.value(), material)?],
             _ => vec![],
+        },
+        WallSpec::Circle { name, centre, radius, .. } => match point("centre", centre) {
+            Some(centre) => vec![Wall::circle(name, centre, radius.value(), material)?],
+            None => vec![],
         },
         WallSpec::Chain { name, points, closed, .. } => {
             let points: Option<Vec<D::Vec>> =
@@ -248,6 +257,7 @@ impl WallSpec {
             | Self::Segment { material, .. }
             | Self::Block { material, .. }
             | Self::Tube { material, .. }
+            | Self::Circle { material, .. }
             | Self::Chain { material, .. }
             | Self::Mesh { material, .. }
             | Self::HeldGrains { material, .. }
@@ -261,6 +271,7 @@ impl WallSpec {
             | Self::Segment { moves, .. }
             | Self::Block { moves, .. }
             | Self::Tube { moves, .. }
+            | Self::Circle { moves, .. }
             | Self::Chain { moves, .. }
             | Self::Mesh { moves, .. }
             | Self::HeldGrains { moves, .. } => moves.as_ref(),
@@ -280,6 +291,7 @@ impl WallSpec {
             | Self::Segment { opens, .. }
             | Self::Block { opens, .. }
             | Self::Tube { opens, .. }
+            | Self::Circle { opens, .. }
             | Self::Chain { opens, .. }
             | Self::Mesh { opens, .. }
             | Self::HeldGrains { opens, .. } => opens.as_deref(),

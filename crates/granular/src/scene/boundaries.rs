@@ -42,6 +42,10 @@ pub enum MotionSpec {
         /// Area in m^2 on which the pressure acts; in the plane the length in m.
         #[serde(default)]
         area: Option<f64>,
+        /// Instead of an area that stays: pairs of names of planes that face one another, such as `[["left", "right"]]`. The
+        /// pressure acts on what they leave between them as they stand; one pair in the plane, two in space.
+        #[serde(default)]
+        between: Vec<Vec<String>>,
         /// Mass of the wall, in the plane per metre of depth; that of all grains by default.
         #[serde(default)]
         mass: Option<Mass>,

@@ -23,7 +23,9 @@ pub(super) fn measures(out: &Path, point: &Point) -> Result<Measures, Failure> {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
     };
-    let mut found: Measures = metrics.map(|(name, value)| (with_unit(name), value.to_string())).collect();
+    // What could not be measured is an empty field.
+    let text = |value: &serde_json::Value| if value.is_null() { String::new() } else { value.to_string() };
+    let mut found: Measures = metrics.map(|(name, value)| (with_unit(name), text(value))).collect();
     let scene: Scene = point.text.parse()?;
     for Output { write, .. } in &scene.outputs {
         let Writer::Table { path, .. } = write else { continue };

@@ -48,7 +48,8 @@ fn pressed<D: Dim>(rows: &mut Rows, side: usize) -> Result<(), StepError> {
         // Other pressures along other axes.
         let area = side.pow(D::N as u32 - 1) as f64;
         let force = (1.0 + axis as f64) * 1e-7 * normal_stiffness * area;
-        let servo = Servo { direction: -along, force, mass, damping: force / 0.1, max_speed: 1.0 };
+        let servo =
+            Servo { direction: -along, force, pressure: None, mass, damping: force / 0.1, max_speed: 1.0 };
         let lid = Wall::plane(&format!("{axis}high"), along * far, -along, smooth).expect(FITS);
         walls.push(lid.moving(WallMotion::Servo(servo)));
     }
@@ -163,7 +164,7 @@ fn squeezed(rows: &mut Rows) -> Result<(), StepError> {
     let glass = materials.add(material).expect(FITS);
     let up = <D2 as Dim>::Vec::along(1, 1.0);
     let (mass, force) = (10.0, 1.0);
-    let servo = Servo { direction: -up, force, mass, damping: 0.0, max_speed: f64::INFINITY };
+    let servo = Servo { direction: -up, force, pressure: None, mass, damping: 0.0, max_speed: f64::INFINITY };
     let lid = Wall::plane("lid", up * 2e-3, -up, glass).expect(FITS).moving(WallMotion::Servo(servo));
     let floor = Wall::plane("floor", up * 0.0, up, glass).expect(FITS);
     let grains = vec![Grain::at(up * 1e-3, 1e-3, glass)];
@@ -213,7 +214,8 @@ fn shaken<D: Dim>(rows: &mut Rows, side: usize, speed: f64) -> Result<(), StepEr
     let along = D::Vec::along(0, 1.0);
     let (frequency, amplitude) = (2000.0 * speed, along * 20e-6);
     walls[1].motion = Some(WallMotion::Oscillating { amplitude, frequency, phase: 0.3 });
-    let servo = Servo { direction: -along, force: 20.0, mass: 0.02, damping: 5.0, max_speed: speed };
+    let servo =
+        Servo { direction: -along, force: 20.0, pressure: None, mass: 0.02, damping: 5.0, max_speed: speed };
     walls[2].motion = Some(WallMotion::Servo(servo));
     walls[3].motion = Some(WallMotion::Steady { velocity: D::Vec::along(1, 0.1 * speed) });
     let place = |index: usize| {

@@ -60,6 +60,58 @@ fn absorbing_disk() -> Lbm2 {
     Lbm2::new(setup).unwrap()
 }
 
+/// A force that varies in space and time, a lid with a profile, walls that slip and a disk.
+fn stirred() -> Lbm2 {
+    let mut setup = Setup::new([33, 70, 1], 1e-3, 1e-6, 0.6);
+    setup.faces[0] =
+        [Face::slipping(0.6e-3), Face::NavierSlip { length: 2e-3, velocity: DVec2::new(0.0, 2e-3) }];
+    let lid = Profile::new(|p: DVec2| DVec2::new(8.0 * p.x * (0.033 - p.x), 0.0));
+    setup.faces[1] = [Face::REST, Face::WallProfile(lid)];
+    setup.smagorinsky = Some(0.1);
+    setup.body_force = Some(BodyForce::in_space_times(
+        |p: DVec2| 1e-4 * DVec2::new((300.0 * p.y).sin(), (200.0 * p.x).cos()),
+        |time| (30.0 * time).cos(),
+    ));
+    setup.obstacles.push(Obstacle::new("disk", Ball { centre: DVec2::new(0.015, 0.03), radius: 0.0052 }));
+    Lbm2::new(setup).unwrap()
+}
+
+/// Any function of place and time, beside open faces in space.
+fn waves() -> Lbm3 {
+    let mut setup = Setup::new([14, 11, 9], 1e-3, 1e-6, 0.7);
+    setup.faces[0] = [
+        Face::Velocity(Profile::uniform(DVec3::new(0.0008, 0.0, 0.0)), OpenScheme::Regularised),
+        Face::absorbing(0.0),
+    ];
+    setup.faces[1] = [Face::FreeSlip, Face::REST];
+    let wave = |p: DVec3, time: f64| 1e-3 * DVec3::new((500.0 * p.y - 20.0 * time).sin(), 0.0, 0.1);
+    setup.body_force = Some(BodyForce::everywhere(wave));
+    Lbm3::new(setup).unwrap()
+}
+
+/// An annulus whose shaft was set turning by name, in a fluid that is shaken.
+fn shaken_annulus() -> Lbm<D2Q9, 9, f32> {
+    let mut setup = Setup::new([50, 41, 1], 1e-3, 1e-6, 0.6);
+    let centre = DVec2::new(0.0251, 0.0203);
+    setup.obstacles.push(Obstacle::new("shaft", Ball { centre, radius: 0.0072 }));
+    setup.obstacles.push(Obstacle::new("tank", Hole(Ball { centre, radius: 0.0188 })));
+    setup.body_force = Some(BodyForce::in_time(|time| 1e-3 * DVec2::new((40.0 * time).sin(), 0.0)));
+    let mut lbm = Lbm::new(setup).unwrap();
+    let mut motion = lbm.obstacle_motion("shaft").unwrap();
+    motion.spin = 0.2;
+    lbm.set_obstacle_motion("shaft", motion).unwrap();
+    lbm
+}
+
+/// A lid whose velocity was set.
+fn lid_set_by_name() -> Lbm2 {
+    let mut setup = Setup::new([30, 31, 1], 1e-3, 1e-6, 0.6);
+    setup.faces[1] = [Face::REST, Face::REST];
+    let mut lbm = Lbm2::new(setup).unwrap();
+    lbm.set_face_velocity("top", DVec2::new(3e-3, 0.0)).unwrap();
+    lbm
+}
+
 fn step(tau: f64) -> f64 {
     Setup::<granular_core::D2>::new([2, 2, 1], 1e-3, 1e-6, tau).time_step
 }
@@ -69,3 +121,7 @@ contract_tests!(sphere_between_open_faces, spheres, step(0.7));
 contract_tests!(disk_through_a_periodic_face_in_single_precision, disk_in_stream, step(0.6));
 contract_tests!(open_on_all_sides_in_space, open_on_all_sides, step(0.6));
 contract_tests!(disk_beside_absorbing_faces, absorbing_disk, step(0.6));
+contract_tests!(stirred_between_walls_that_slip, stirred, step(0.6));
+contract_tests!(waves_of_force_between_open_faces, waves, step(0.7));
+contract_tests!(shaken_annulus_in_single_precision, shaken_annulus, step(0.6));
+contract_tests!(lid_set_by_name_keeps_its_velocity, lid_set_by_name, step(0.6));

@@ -4,15 +4,20 @@
 #![allow(clippy::unwrap_used)]
 
 mod absorbing;
+mod body_forces;
 mod channel;
 mod contract;
+mod edges;
 mod lattices;
 mod limits;
 mod open;
 mod pairs;
 mod probes;
+mod scales;
 mod shapes;
 mod symmetry;
+mod translation;
+mod walls;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =

@@ -4,7 +4,6 @@ use super::{NamedMaterials, quoted};
 use crate::model::Problems;
 use crate::scene::Scene;
 use granular_core::Dim;
-use granular_dem::Grain;
 use granular_dem::spec::{ContactSpec, MaterialSpec};
 
 /// Whether a material states what the contact model needs, and nothing that contradicts it.
@@ -56,14 +55,13 @@ pub(super) fn is_stated(
 }
 
 /// Gives linear materials without a stiffness the one that follows from their elastic constants
-/// and the mean radius of the grains.
+/// and the mean radius \[m\] of the grains, those that come in later included.
 pub(super) fn derive<D: Dim>(
     scene: &Scene,
     materials: &mut NamedMaterials,
-    grains: &[Grain<D>],
+    radius: f64,
     problems: &mut Problems,
 ) {
-    let radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len().max(1) as f64;
     for (name, spec) in &scene.materials {
         let id = materials.ids.get(name).copied().flatten();
         let (Some(id), None, Some(elastic)) = (id, spec.normal_stiffness, spec.elasticity()) else {

@@ -1,0 +1,68 @@
+//! Bodies that surround the fluid.
+
+use crate::shape::Shape;
+use granular_core::{Dim, Vector};
+
+/// The body that fills all space outside of a shape, whose inside is the fluid: a tank, a pipe (with
+/// [`crate::Extruded`]), or with a second obstacle within it an annulus.
+///
+/// It has no end, so it has no images through periodic faces: the shape lies in the domain, or crosses it along
+/// the axes that are periodic, as a pipe does. Walls that it leaves no fluid beside do nothing.
+///
+/// ```
+/// use granular_core::{D2, glam::DVec2};
+/// use granular_lbm::{Ball, Hole, Shape};
+///
+/// let tank = Hole(Ball::<D2> { centre: DVec2::ZERO, radius: 1.0 });
+/// assert!(!tank.contains(DVec2::ZERO) && tank.contains(DVec2::new(1.1, 0.0)));
+/// // The surface is met from within.
+/// assert!((tank.crossing(DVec2::ZERO, DVec2::new(2.0, 0.0)) - 0.5).abs() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Hole<S>(pub S);
+
+impl<D: Dim, S: Shape<D>> Shape<D> for Hole<S> {
+    fn contains(&self, point: D::Vec) -> bool {
+        !self.0.contains(point)
+    }
+
+    /// Without end.
+    fn bounds(&self) -> (D::Vec, D::Vec) {
+        let end = |length| D::Vec::from_slice(&[length; 3][..D::N]).expect("one component per axis");
+        (end(f64::NEG_INFINITY), end(f64::INFINITY))
+    }
+
+    fn centre(&self) -> D::Vec {
+        self.0.centre()
+    }
+
+    fn reach(&self) -> f64 {
+        self.0.reach()
+    }
+
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        (1.0 - self.0.crossing(inside, outside)).clamp(f64::MIN_POSITIVE, 1.0)
+    }
+}
+
+impl<D: Dim> Shape<D> for std::sync::Arc<dyn Shape<D>> {
+    fn contains(&self, point: D::Vec) -> bool {
+        (**self).contains(point)
+    }
+
+    fn bounds(&self) -> (D::Vec, D::Vec) {
+        (**self).bounds()
+    }
+
+    fn centre(&self) -> D::Vec {
+        (**self).centre()
+    }
+
+    fn reach(&self) -> f64 {
+        (**self).reach()
+    }
+
+    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
+        (**self).crossing(outside, inside)
+    }
+}
