@@ -4,6 +4,9 @@ use crate::material::{MaterialId, Materials, SetupError};
 use granular_core::search::curve_order;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
+/// Largest over smallest radius.
+const LARGEST_RATIO: f64 = 1e6;
+
 /// One grain, as it is put into a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grain<D: Dim> {
@@ -67,15 +70,15 @@ impl<D: Dim> Grains<D> {
         for grain in list {
             check(grain, materials)?;
         }
+        check_sizes(list.iter().map(|grain| grain.radius))?;
         let first_material = list.first().map_or(0, |grain| grain.material.0);
         let uniform = list.iter().all(|grain| grain.material.0 == first_material);
-        let mass = |grain: &Grain<D>| materials.get(grain.material).density * D::ball_volume(grain.radius);
         Ok(Self {
             position: list.iter().map(|grain| grain.position).collect(),
             velocity: list.iter().map(|grain| grain.velocity).collect(),
             acceleration: vec![gravity; list.len()],
             radius: list.iter().map(|grain| grain.radius).collect(),
-            mass: list.iter().map(mass).collect(),
+            mass: list.iter().map(|grain| mass_of(grain, materials)).collect(),
             id: (0..list.len() as u32).collect(),
             material: if uniform { Vec::new() } else { list.iter().map(|grain| grain.material.0).collect() },
             several_materials: !uniform,
@@ -216,6 +219,11 @@ impl<D: Dim> Grains<D> {
     }
 }
 
+/// Mass of a grain \[kg; kg/m in the plane\].
+fn mass_of<D: Dim>(grain: &Grain<D>, materials: &Materials) -> f64 {
+    materials.get(grain.material).density * D::ball_volume(grain.radius)
+}
+
 /// Refuses an entry of a snapshot with values that no step would notice, such as the spin of a
 /// grain that touches nothing.
 pub(crate) fn check_finite(entry: &str, fits: bool) -> Result<(), SnapshotError> {
@@ -237,6 +245,18 @@ fn permute<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
     }
 }
 
+/// Refuses radii \[m\] of which the smallest is nothing beside the largest: masses differ by the cube of that, and no step
+/// suits both.
+pub(crate) fn check_sizes(radii: impl Iterator<Item = f64>) -> Result<(), SetupError> {
+    let (smallest, largest) =
+        radii.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
+    if largest > LARGEST_RATIO * smallest {
+        let what = format!("smallest radius of a grain, where the largest is {largest} m,");
+        return Err(SetupError::new(what, smallest, "at least a millionth of the largest"));
+    }
+    Ok(())
+}
+
 fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(), SetupError> {
     if !(grain.radius.is_finite() && grain.radius > 0.0) {
         return Err(SetupError::new("radius of a grain", grain.radius, "positive and finite"));
@@ -247,6 +267,12 @@ fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(), SetupErr
     if grain.material.0 as usize >= materials.len() {
         let index = f64::from(grain.material.0);
         return Err(SetupError::new("material of a grain", index, "one of the materials of this set-up"));
+    }
+    // The moment of inertia is the smaller or the larger of the two.
+    let inertia = mass_of(grain, materials) * grain.radius * grain.radius;
+    if !inertia.is_normal() {
+        let what = format!("moment of inertia of a grain of radius {} m", grain.radius);
+        return Err(SetupError::new(what, inertia, "a number between 1e-307 and 1e308: take another radius"));
     }
     Ok(())
 }

@@ -87,7 +87,7 @@ pub use servo::{PressureBetween, Servo};
 pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use shaking::Shaking;
 pub use show::Energies;
-pub use traffic::{Exchanged, Inlet, Outlet};
+pub use traffic::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
 pub use wall::{Shape, Wall};
 
 /// Disks in the plane, per metre of depth.

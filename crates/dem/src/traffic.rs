@@ -4,12 +4,15 @@
 //! sizes are drawn from the seed and the number of the grain, never from a stream: there is no random state.
 
 use crate::dem::Dem;
-use crate::grains::{Grain, check_finite};
+use crate::grains::{Grain, check_finite, check_sizes};
 use crate::material::{MaterialId, SetupError};
 use granular_core::{Dim, Linear, Section, SnapshotError, Vector};
+use room::{Ball, Room};
 
-/// Steps between two looks.
-const EVERY: u64 = 100;
+mod room;
+
+/// Steps between two looks at what inlets and outlets have to do.
+pub const STEPS_PER_LOOK: u64 = 100;
 /// Places tried for one grain.
 const TRIES: u64 = 100;
 /// Shown numbers.
@@ -296,6 +299,7 @@ impl<D: Dim> Dem<D> {
         if inlet.radii.is_empty() {
             return refuse("number of radii", 0.0, "at least one");
         }
+        check_sizes(inlet.radii.iter().chain(&self.grains.radius).copied())?;
         if !(room >= 2.0 * largest && inlet.low.is_finite() && inlet.high.is_finite()) {
             return refuse("extent", room, "at least the diameter of the largest grain");
         }
@@ -313,7 +317,7 @@ impl<D: Dim> Dem<D> {
 
     /// Whether a look is due when so many more steps are taken.
     pub(crate) fn looks_after(&self, steps: u64) -> bool {
-        !self.traffic.is_empty() && (self.steps + steps).is_multiple_of(EVERY)
+        !self.traffic.is_empty() && (self.steps + steps).is_multiple_of(STEPS_PER_LOOK)
     }
 
     /// Lets grains come and go when the count of steps says so.
@@ -375,11 +379,11 @@ impl<D: Dim> Dem<D> {
             let (first, due) = (source.tried, source.due(time));
             let inlet = source.inlet.clone();
             self.traffic.sources[index].tried += due;
-            let mut near = self.near(&inlet);
+            let mut near = Room::of(&inlet, self.near(&inlet));
             for number in first..first + due {
                 match self.fit(&inlet, number, &near) {
                     Some(grain) if self.traffic.next_id < u32::MAX => {
-                        near.push((grain.position, grain.radius));
+                        near.add(grain.position, grain.radius);
                         self.put_in(&grain);
                     }
                     _ => self.traffic.done.not_placed += 1,
@@ -391,16 +395,16 @@ impl<D: Dim> Dem<D> {
     }
 
     /// Grains that can be in the way at an inlet.
-    fn near(&self, inlet: &Inlet<D>) -> Vec<(D::Vec, f64)> {
+    fn near(&self, inlet: &Inlet<D>) -> Vec<Ball<D>> {
         let grains = self.grains.position.iter().copied().zip(self.grains.radius.iter().copied());
-        let reaches = |&(at, radius): &(D::Vec, f64)| {
+        let reaches = |&(at, radius): &Ball<D>| {
             (at - at.max(inlet.low).min(inlet.high)).length_squared() < radius * radius
         };
         grains.filter(reaches).collect()
     }
 
     /// The grain of a number where it fits in, if it does.
-    fn fit(&self, inlet: &Inlet<D>, number: u64, near: &[(D::Vec, f64)]) -> Option<Grain<D>> {
+    fn fit(&self, inlet: &Inlet<D>, number: u64, near: &Room<D>) -> Option<Grain<D>> {
         let pick = uniform(inlet.seed, number, 0) * inlet.radii.len() as f64;
         let radius = inlet.radii[(pick as usize).min(inlet.radii.len() - 1)];
         (0..TRIES).find_map(|attempt| {
@@ -410,9 +414,7 @@ impl<D: Dim> Dem<D> {
                 low + radius + share * (high - low - 2.0 * radius)
             };
             let at = (0..D::N).fold(D::Vec::ZERO, |at, axis| at + D::Vec::along(axis, coordinate(axis)));
-            let of_grains = near
-                .iter()
-                .all(|&(other, reach)| (at - other).length_squared() >= (radius + reach) * (radius + reach));
+            let of_grains = near.has_place(at, radius);
             let of_walls = self.walls.iter().enumerate().filter(|(_, wall)| !wall.open).all(|(k, wall)| {
                 let point = self.movers.poses.get(k).map_or(at, |pose| pose.within_wall(at));
                 wall.shape.distance(point).0 >= radius

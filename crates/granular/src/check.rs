@@ -45,9 +45,8 @@ pub struct Report {
 /// With all problems of the scene.
 pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
     let scene = Scene::of(text)?;
-    let located = |problem: SceneProblem| problem.located_in(text);
     let model =
-        model::build(&scene).map_err(|list| Failure::Scene(list.into_iter().map(located).collect()))?;
+        model::build(&scene).map_err(|list| Failure::Scene(SceneProblem::all_located_in(list, text)))?;
     Ok((scene, model))
 }
 
@@ -84,6 +83,7 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
             }
         }
     }
+    problems.extend(model::crowded_inlets(scene, &steps));
     for bound in limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds()) {
         problems.push(format!(
             "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
@@ -102,6 +102,14 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
 /// # Errors
 /// When the scene is wrong. A scene that would be refused gives a report with problems.
 pub fn check(text: &SceneText) -> Result<Report, Failure> {
+    check_within(text, PROBE)
+}
+
+/// The same with another wall time to measure the speed in; at least one step is taken.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure> {
     let (scene, mut model) = read(text)?;
     let (limits, steps, problems) = limits_of(&scene, &model);
     let mut memory = model.simulation.solver().memory();
@@ -118,7 +126,7 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
     let pushes = pushes(&scene, &model);
     let warnings = model::warnings(&scene, &model);
     let estimated_seconds =
-        if problems.is_empty() { count * seconds_per_step(&mut model, steps[0]) } else { f64::NAN };
+        if problems.is_empty() { count * seconds_per_step(&mut model, steps[0], probe) } else { f64::NAN };
     Ok(Report {
         scene: text.name().to_owned(),
         size: model.simulation.solver().size(),
@@ -144,13 +152,13 @@ fn pushes(scene: &Scene, model: &Model) -> Vec<(String, String)> {
 }
 
 /// Wall time of one step, measured.
-fn seconds_per_step(model: &mut Model, dt: f64) -> f64 {
+fn seconds_per_step(model: &mut Model, dt: f64, probe: Duration) -> f64 {
     let begun = Instant::now();
     let (mut steps, mut burst) = (0, 1);
     if model.simulation.begin_segment(dt).is_err() {
         return f64::NAN;
     }
-    while begun.elapsed() < PROBE {
+    while steps == 0 || begun.elapsed() < probe {
         if model.simulation.advance(burst).is_err() {
             return f64::NAN;
         }

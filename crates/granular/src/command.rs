@@ -10,13 +10,16 @@ use clap::{Args, Parser, Subcommand};
 use granular::failure::Failure;
 use granular::run::Interrupt;
 use granular::scene_file::SceneText;
-use granular::{check, folder, run};
+use granular::{check, folder, machine, run};
 use granular_core::Shown;
 use serde_json::{Value, json};
+use signal_hook::iterator::Signals;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
 /// Granular flows from one scene file.
 ///
@@ -110,7 +113,7 @@ struct Edits {
 impl Command {
     /// Runs the verb and prints what came of it.
     pub(crate) fn execute(self) -> ExitCode {
-        let threads = self.common.threads.unwrap_or(0);
+        let threads = threads(self.common.threads);
         // The global pool is built once, here, before anything runs in it.
         if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
             eprintln!("warning: {error}; the default number of threads is used");
@@ -123,15 +126,32 @@ impl Command {
                 // list, and they say what failed.
                 let reported = matches!(failure, Failure::Invalid(_) | Failure::Runs { .. })
                     || checks && matches!(failure, Failure::Refused(_));
-                if self.common.json && !reported {
-                    print(&(pretty(&failure_json(&failure)) + "\n"));
-                }
-                // Nobody may be listening; the exit code says it too.
-                let _ = writeln!(std::io::stderr(), "{failure}");
+                tell(&failure, self.common.json && !reported);
                 ExitCode::from(failure.code())
             }
         }
     }
+}
+
+/// Says why a command failed, with `json` on standard output too.
+fn tell(failure: &Failure, json: bool) {
+    if json {
+        print(&(pretty(&failure_json(failure)) + "\n"));
+    }
+    // Nobody may be listening; the exit code says it too.
+    let _ = writeln!(std::io::stderr(), "{failure}");
+}
+
+/// Threads to use; 0 for all cores. More than make sense would wait for one another for seconds.
+fn threads(asked: Option<usize>) -> usize {
+    let of_rayon = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok();
+    let (asked, most) = (asked.or_else(of_rayon).unwrap_or(0), machine::most_threads());
+    if asked > most {
+        eprintln!(
+            "warning: {asked} threads are more than this machine can use: {most} are taken; the results are the same"
+        );
+    }
+    asked.min(most)
 }
 
 impl Verb {
@@ -146,12 +166,12 @@ impl Verb {
             Self::Run { scene, edits, out, force } => {
                 let text = read(&scene, &edits)?;
                 let out = out.unwrap_or_else(|| default_folder(&scene));
-                let facts = run::run(&text, &out, force, common.quiet, &interrupt()?)?;
+                let facts = run::run(&text, &out, force, common.quiet, &interrupt(common, &out)?)?;
                 show(common, &result(&facts), || summary(&facts, &out));
                 Ok(())
             }
             Self::Resume { folder } => {
-                let facts = run::resume(&folder, common.quiet, &interrupt()?)?;
+                let facts = run::resume(&folder, common.quiet, &interrupt(common, &folder)?)?;
                 show(common, &result(&facts), || summary(&facts, &folder));
                 Ok(())
             }
@@ -185,8 +205,9 @@ fn default_folder(scene: &Path) -> PathBuf {
     Path::new("runs").join(name)
 }
 
-/// Raises a flag on SIGINT and SIGTERM.
-fn interrupt() -> Result<Interrupt, Failure> {
+/// Raises a flag on SIGINT and SIGTERM, at which runs that take steps save their state. While none does, a sample is
+/// built, a figure drawn or a file read: then the process ends.
+fn interrupt(common: &Common, out: &Path) -> Result<Interrupt, Failure> {
     let interrupt = Interrupt::default();
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         let number = interrupt.signal.clone();
@@ -196,12 +217,44 @@ fn interrupt() -> Result<Interrupt, Failure> {
             .and_then(|_| signal_hook::flag::register(signal, flag));
         register.map_err(|error| Failure::io("signals", error))?;
     }
+    let signals = Signals::new([signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM]);
+    let mut signals = signals.map_err(|error| Failure::io("signals", error))?;
+    let (watched, out, json) = (interrupt.clone(), out.to_owned(), common.json);
+    std::thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            end_when_idle(&watched, signal, &out, json);
+        }
+    });
     // Without a handler a limit on the size of files (`ulimit -f`) kills the process; with one the
     // write fails, which is told.
     let too_large = signal_hook::flag::register(FILE_TOO_LARGE, Arc::default());
     too_large.map_err(|error| Failure::io("signals", error))?;
     Ok(interrupt)
 }
+
+/// Ends the process after a signal as soon as no run has taken steps for a while, in which it would have ended by itself.
+fn end_when_idle(interrupt: &Interrupt, signal: i32, out: &Path, json: bool) {
+    let mut idle = Instant::now();
+    while idle.elapsed() < IDLE {
+        if interrupt.stepping.load(Ordering::SeqCst) > 0 {
+            idle = Instant::now();
+        }
+        std::thread::sleep(IDLE / 20);
+    }
+    let signal = signal as usize;
+    let failure = if folder::RunFolder::open(out).is_ok() {
+        let hint = format!("go on with `granular resume {}`", out.display());
+        Failure::Interrupted { signal, hint }
+    } else {
+        Failure::NotBegun { signal }
+    };
+    tell(&failure, json);
+    // Nothing that other threads hold is worth waiting for: files are whole at any moment.
+    signal_hook::low_level::exit(failure.code().into());
+}
+
+/// How long nothing must take steps after a signal before the process ends.
+const IDLE: Duration = Duration::from_millis(400);
 
 /// SIGXFSZ, of the same number on Linux (but for MIPS), macOS and the BSDs.
 const FILE_TOO_LARGE: i32 = 25;

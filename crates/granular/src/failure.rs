@@ -29,6 +29,11 @@ pub enum Failure {
         /// How to resume.
         hint: String,
     },
+    /// The user or the system interrupted a command before it had anything to save: 128 plus the signal.
+    NotBegun {
+        /// Signal number.
+        signal: usize,
+    },
     /// Runs of a sweep failed: the exit code is that of the first of them.
     Runs {
         /// That exit code.
@@ -50,7 +55,7 @@ impl Failure {
             Self::Stopped { .. } => 4,
             Self::Io(_) => 5,
             Self::Runs { code, .. } => *code,
-            Self::Interrupted { signal, .. } => 128 + (*signal as u8 & 0x7f),
+            Self::Interrupted { signal, .. } | Self::NotBegun { signal } => 128 + (*signal as u8 & 0x7f),
         }
     }
 
@@ -81,6 +86,9 @@ impl fmt::Display for Failure {
             Self::Runs { reason, .. } => f.write_str(reason),
             Self::Io(reason) => write!(f, "error: {reason}"),
             Self::Interrupted { hint, .. } => write!(f, "interrupted: the state is saved\n  = help: {hint}"),
+            Self::NotBegun { .. } => {
+                f.write_str("interrupted: nothing had begun\n  = help: give the same command again")
+            }
             Self::Invalid(reason) => write!(f, "invalid: {reason}"),
         }
     }

@@ -13,6 +13,10 @@ use std::sync::Arc;
 /// File that marks a run folder.
 const RUN_FILE: &str = "run.json";
 const SCENE_FILE: &str = "scene.ron";
+/// What is left of it by a kill within its writing.
+const SCENE_TEMPORARY: &str = "scene.ron.tmp";
+/// Who wrote [`RUN_FILE`].
+pub(crate) const PROGRAM: &str = "granular";
 const SNAPSHOTS: &str = "snapshots";
 /// Whoever writes to the folder holds the lock of this empty file.
 const LOCK: &str = "lock";
@@ -28,11 +32,17 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Makes a new folder for this scene text. An existing run is replaced only when `force`.
+    /// Makes a new folder for this scene text and the files that it reads, by their names in the folder. An existing
+    /// run is replaced only when `force`.
     ///
     /// # Errors
     /// When something is in the way, or the folder cannot be written.
-    pub fn create(path: &Path, scene: &str, force: bool) -> Result<Self, Failure> {
+    pub fn create(
+        path: &Path,
+        scene: &str,
+        inputs: &[(String, Vec<u8>)],
+        force: bool,
+    ) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
             return Err(Failure::io(
                 path.display(),
@@ -43,11 +53,13 @@ impl RunFolder {
         let lock = lock(path)?;
         // Another process may have been faster.
         refuse_occupied(path, force)?;
-        empty(path).map_err(|error| Failure::io(path.display(), error))?;
         let folder = Self { path: path.to_path_buf(), _lock: Some(lock) };
         // This file marks the folder as a run, so it comes first: what is killed from here on can
-        // be resumed or replaced.
-        folder.set_facts(&json!({ "exit": "running" }))?;
+        // be resumed or replaced. A run that is being replaced is no longer done.
+        folder.set_facts(&json!({ "program": PROGRAM, "exit": "running" }))?;
+        empty(path).map_err(|error| Failure::io(path.display(), error))?;
+        inputs.iter().try_for_each(|(name, bytes)| folder.keep(name, bytes))?;
+        // With the scene the run can be resumed, so all that it reads is there before.
         folder.write(SCENE_FILE, scene)?;
         Ok(folder)
     }
@@ -57,6 +69,14 @@ impl RunFolder {
     /// # Errors
     /// When it is none.
     pub fn open(path: &Path) -> Result<Self, Failure> {
+        if path.join(RUN_FILE).is_file() && !path.join(SCENE_FILE).is_file() && is_own_run(path) {
+            let force = if is_unborn(path) { "" } else { " and --force" };
+            let reason = format!(
+                "holds a run that was stopped before it began, so there is nothing to go on with; start it again with \
+                 `granular run`{force}"
+            );
+            return Err(Failure::io(path.display(), reason));
+        }
         let lacks: Vec<&str> =
             [SCENE_FILE, RUN_FILE].into_iter().filter(|name| !path.join(name).is_file()).collect();
         match (path.is_dir(), lacks.as_slice()) {
@@ -123,7 +143,7 @@ impl RunFolder {
     }
 
     /// Keeps a file that the scene reads.
-    pub(crate) fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         let path = self.path.join(name);
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
@@ -162,15 +182,16 @@ impl RunFolder {
 
 /// Refuses a folder that holds something else than a run, or a run that is not to be replaced.
 fn refuse_occupied(path: &Path, force: bool) -> Result<(), Failure> {
-    // What a run leaves that was killed before it wrote its first file.
-    let litter = [format!("{RUN_FILE}.tmp"), LOCK.to_owned()];
-    let entries = fs::read_dir(path).into_iter().flatten().flatten();
-    let is_litter = |entry: &fs::DirEntry| litter.iter().any(|name| entry.file_name() == name.as_str());
-    if entries.into_iter().all(|entry| is_litter(&entry)) {
+    if is_unborn(path) {
         return Ok(());
     }
     if !path.join(RUN_FILE).is_file() {
         let reason = "is not empty and holds no run (no run.json), so it is left alone, also with \
+                      --force; choose another folder with --out";
+        return Err(Failure::io(path.display(), reason));
+    }
+    if !is_own_run(path) {
+        let reason = "is not empty, and its run.json is none that this program wrote, so it is left alone, also with \
                       --force; choose another folder with --out";
         return Err(Failure::io(path.display(), reason));
     }
@@ -179,6 +200,36 @@ fn refuse_occupied(path: &Path, force: bool) -> Result<(), Failure> {
         return Err(Failure::io(path.display(), reason));
     }
     Ok(())
+}
+
+/// Whether a folder is empty, or holds at most what a run leaves that was killed before its scene was written.
+fn is_unborn(path: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(path) else { return !path.exists() };
+    let begun = [RUN_FILE, SAMPLE, MESHES];
+    let mut marked = false;
+    let only_litter = entries.flatten().all(|entry| {
+        let name = entry.file_name();
+        marked |= begun.iter().any(|known| name == *known);
+        match name.to_str() {
+            // The lock is an empty file.
+            Some(LOCK) => entry.metadata().is_ok_and(|data| data.is_file() && data.len() == 0),
+            Some(name) => {
+                begun.contains(&name.strip_suffix(".tmp").unwrap_or(name)) || name == SCENE_TEMPORARY
+            }
+            None => false,
+        }
+    });
+    // Inputs without the file that marks a run are not of a run.
+    only_litter && (!marked || is_own_run(path))
+}
+
+/// Whether `run.json` of a folder is one that this program wrote. Older versions did not write the name of the program, but how
+/// it was built, once a run had begun.
+fn is_own_run(path: &Path) -> bool {
+    let text = fs::read_to_string(path.join(RUN_FILE)).unwrap_or_default();
+    let facts: Value = serde_json::from_str(&text).unwrap_or_default();
+    let says = |key: &str| facts.get(key).is_some_and(|value| !value.is_null());
+    facts["exit"].is_string() && (facts["program"] == PROGRAM || says("built") && says("state_hash"))
 }
 
 /// Takes the lock of a folder, which is made if it is not there.
@@ -191,8 +242,13 @@ fn lock(path: &Path) -> Result<Arc<Lock>, Failure> {
     })
 }
 
-/// Takes all out of a folder but the lock, which is held, and the file that marks it as a run, which is written next.
+/// Takes all out of a folder but the lock, which is held, and the file that marks it as a run. The scene goes first: a run
+/// of which parts are gone cannot be resumed.
 fn empty(path: &Path) -> std::io::Result<()> {
+    match fs::remove_file(path.join(SCENE_FILE)) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
     for entry in fs::read_dir(path)? {
         let entry = entry?;
         if entry.file_type()?.is_dir() {

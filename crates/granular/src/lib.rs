@@ -11,6 +11,7 @@ pub mod figures;
 pub mod folder;
 mod json;
 mod lock;
+pub mod machine;
 pub mod model;
 mod observers;
 mod probes;

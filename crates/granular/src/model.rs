@@ -10,6 +10,7 @@ mod region;
 mod sample;
 mod walls;
 
+pub(crate) use boundaries::crowded_inlets;
 pub(crate) use grains::{NamedMaterials, Whereabouts};
 pub use outputs::{all_shown, shown_on_grids};
 pub use push::{PushAction, PushRecord};

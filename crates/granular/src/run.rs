@@ -2,7 +2,7 @@
 
 use crate::check;
 use crate::failure::Failure;
-use crate::folder::{RunFolder, provenance};
+use crate::folder::{PROGRAM, RunFolder, provenance};
 use crate::model::{self, Model, PushRecord, Whereabouts};
 use crate::observers::{self, END_OF_STAGE, Gone, Packed, Rest, SnapshotTimer, Steady};
 use crate::progress;
@@ -25,6 +25,26 @@ pub struct Interrupt {
     pub raised: Arc<AtomicBool>,
     /// Number of the signal.
     pub signal: Arc<AtomicUsize>,
+    /// Runs that take steps and save their state when they are told to stop. With none, the process may end at
+    /// once: what is on the disk can be resumed or started again.
+    pub stepping: Arc<AtomicUsize>,
+}
+
+/// Counts a run that takes steps, as long as it lives.
+#[derive(Debug)]
+struct Stepping(Arc<AtomicUsize>);
+
+impl Stepping {
+    fn count(interrupt: &Interrupt) -> Self {
+        interrupt.stepping.fetch_add(1, Ordering::SeqCst);
+        Self(interrupt.stepping.clone())
+    }
+}
+
+impl Drop for Stepping {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::SeqCst);
+    }
 }
 
 /// What was a stage and how it began and ended.
@@ -75,6 +95,8 @@ struct Session<'a> {
     records: Vec<StageRecord>,
     steps: Vec<f64>,
     interrupt: &'a Interrupt,
+    /// While steps are taken.
+    stepping: Option<Stepping>,
     quiet: bool,
     begun: Instant,
     first_step: u64,
@@ -105,8 +127,7 @@ pub fn run(
     let mut text = text.clone();
     // The folder holds all that the run needs.
     let files = scene.take_files(&mut text)?;
-    let folder = RunFolder::create(out, text.text(), force)?;
-    files.iter().try_for_each(|(name, bytes)| folder.keep(name, bytes))?;
+    let folder = RunFolder::create(out, text.text(), &files, force)?;
     Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start()
 }
 
@@ -185,6 +206,7 @@ impl<'a> Session<'a> {
             folder,
             steps,
             interrupt,
+            stepping: None,
             quiet,
         })
     }
@@ -201,6 +223,7 @@ impl<'a> Session<'a> {
     /// first stage was begun before.
     fn finish_run(&mut self, first: usize, under_way: bool) -> Result<Value, Failure> {
         self.first_step = self.model.simulation.clock().step();
+        self.stepping = Some(Stepping::count(self.interrupt));
         let result = (first..self.scene.stages.len())
             .try_for_each(|stage| self.stage(stage, under_way && stage == first))
             .and_then(|()| self.close())
@@ -226,6 +249,7 @@ impl<'a> Session<'a> {
             output.finish(&self.model.simulation).map_err(granular_core::RunError::from)?;
         }
         self.save(self.scene.stages.len())?;
+        self.stepping = None;
         crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
         Ok(())
     }
@@ -455,6 +479,7 @@ impl Session<'_> {
         let values = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.value)));
         let units = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.unit)));
         let facts = json!({
+            "program": PROGRAM,
             "scene": self.folder.scene_path().display().to_string(),
             "solver": simulation.solver().name(),
             "exit": exit,

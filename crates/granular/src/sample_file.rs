@@ -6,6 +6,7 @@
 //! overlap, contacts push at once, and friction builds up anew, so that a sample needs a short stage to rest.
 
 use crate::failure::Failure;
+use crate::machine;
 use crate::model::{ColumnSize, Round};
 use granular_core::{Dim, Spin, Vector};
 use granular_dem::{Dem, Grain, MaterialId};
@@ -13,6 +14,8 @@ use granular_io::write_atomically;
 use std::fmt::Write as _;
 use std::path::Path;
 
+/// Memory that a byte of a file takes, grains made of it included \[bytes\].
+const BYTES_PER_BYTE: f64 = 10.0;
 const FIRST_LINE: &str = "# granular sample 1";
 
 /// Grains with names of their materials.
@@ -98,9 +101,11 @@ impl<D: Dim> SavedSample<D> {
     /// Reads a file.
     pub(crate) fn read(path: &Path) -> Result<Self, BadSample> {
         let shown = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            bad(format!("`{shown}`, which cannot be read: {error}"), "a file that a stage saved")
-        })?;
+        let unreadable = |reason: String| {
+            bad(format!("`{shown}`, which cannot be read: {reason}"), "a file that a stage saved")
+        };
+        machine::readable(path, BYTES_PER_BYTE).map_err(unreadable)?;
+        let text = std::fs::read_to_string(path).map_err(|error| unreadable(error.to_string()))?;
         Self::parse(&text).map_err(|BadSample { value, allowed }| bad(format!("`{shown}`: {value}"), allowed))
     }
 

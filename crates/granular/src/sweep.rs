@@ -98,6 +98,7 @@ impl Plan {
                 return Err(SceneProblem::of_file("--set", message).with_hint(hint).into());
             }
         }
+        axis::refuse_many(&axes, base.text().len())?;
         let points = axis::grid(&axes).into_iter().map(|values| Point::of(&base, &axes, &values));
         let points = points.collect::<Result<Vec<_>, SceneProblem>>()?;
         refuse_twins(&points)?;

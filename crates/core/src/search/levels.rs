@@ -9,6 +9,8 @@ use crate::dim::Dim;
 
 /// Sizes of one level span this factor.
 const SPAN: f64 = 2.0;
+/// Levels from the largest number to the smallest. The ratio of two numbers may overflow, the number of levels may not.
+const MOST_LEVELS: f64 = 2100.0;
 
 /// Sorts balls by size and place, and visits neighbours.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +44,7 @@ impl<D: Dim> SizeLevels<D> {
         let (smallest, largest) =
             radii.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         self.skin = skin;
-        let level_of = |radius: f64| ((largest / radius).ln() / SPAN.ln()) as usize;
+        let level_of = |radius: f64| ((largest / radius).ln() / SPAN.ln()).min(MOST_LEVELS) as usize;
         let count = if radii.is_empty() { 0 } else { level_of(smallest) + 1 };
         self.levels.resize_with(count, Level::default);
         for level in &mut self.levels {
@@ -122,6 +124,16 @@ mod tests {
             let radii: Vec<f64> = balls.iter().map(|ball| 0.3 * 10.0_f64.powf(ball.3)).collect();
             let [found, expected] = pairs::<D3>(&positions, &radii, 0.02);
             prop_assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn any_ratio_of_sizes_has_levels() {
+        for (small, large) in [(5e-324, 1e-3), (5e-324, 1e300), (1e-300, 1e8)] {
+            let positions = [DVec2::ZERO, DVec2::new(0.5 * large, 0.0)];
+            let [found, expected] = pairs::<D2>(&positions, &[large, small], 0.0);
+            assert_eq!(found, expected);
+            assert_eq!(found, [(1, 0)]);
         }
     }
 

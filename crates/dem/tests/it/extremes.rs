@@ -50,6 +50,31 @@ fn in_both(check: impl Fn(bool)) {
     check(false);
 }
 
+/// A grain that is nothing beside another once ended in an overflow, with a ratio of radii that is infinite.
+#[test]
+fn sizes_beyond_reason_are_refused() {
+    let mut materials = Materials::new();
+    let glass = materials.add(Material::default()).unwrap();
+    let refused = |radii: [f64; 2]| {
+        let grains = vec![
+            Grain::<D2>::at(Vector::along(0, 0.0), radii[0], glass),
+            Grain::at(Vector::along(0, 3.0 * (radii[0] + radii[1])), radii[1], glass),
+        ];
+        let (walls, gravity) = (Vec::new(), down::<D2>(9.81));
+        let setup =
+            Setup { materials: materials.clone(), grains, walls, gravity, options: Options::default() };
+        Dem::new(setup).err().map(|error| error.to_string())
+    };
+    assert_eq!(refused([1e-3, 1.1e-9]), None);
+    let beside = refused([1e-3, 0.9e-9]).unwrap();
+    assert!(beside.contains("smallest radius of a grain, where the largest is 0.001 m,"), "{beside}");
+    assert!(beside.contains("at least a millionth of the largest"), "{beside}");
+    for radius in [5e-324, 1e-160, 1e160] {
+        let alone = refused([radius, radius]).unwrap();
+        assert!(alone.contains("moment of inertia of a grain"), "{alone}");
+    }
+}
+
 #[test]
 fn no_grains_and_one_grain() {
     fn few<D: Dim>(side: usize) {

@@ -66,7 +66,7 @@ impl Sweep {
             return forecast.failure().map_or(Ok(()), Err);
         }
         let work = Work { jobs: self.jobs, retry: self.retry, only: self.only, quiet: common.quiet };
-        let outcome = plan.work(&out, work, &interrupt()?)?;
+        let outcome = plan.work(&out, work, &interrupt(common, &out)?)?;
         show(common, &outcome.report, || summary(&outcome.report));
         outcome.failure.map_or(Ok(()), Err)
     }

@@ -2,16 +2,23 @@
 
 use super::sample::grading_of;
 use super::{NamedMaterials, Problems};
+use crate::machine::room_for;
 use crate::scene::boundaries::{InletSpec, MotionSpec, OutletSpec};
 use crate::scene::{Change, Scene};
 use granular_core::units::Length;
 use granular_core::{Dim, Linear, Spin, Vector};
 use granular_dem::{Dem, Inlet, Outlet, PressureBetween, Servo, Shape, Wall, WallMotion};
 
+/// Steps between two looks at what is due at inlets.
+const STEPS_PER_LOOK: u64 = granular_dem::STEPS_PER_LOOK;
+/// Most grains that may be due at one look; each tries up to a hundred places.
+const MOST_DUE: f64 = 1e4;
 /// Radii that stand for a grading at an inlet.
 const SIZES: usize = 1000;
 /// More held grains than this are a slip of the pen.
 const MOST_HELD: f64 = 1e7;
+/// Memory that a held grain takes \[bytes\].
+const BYTES_PER_HELD: f64 = 500.0;
 
 /// Whether some stage starts the wall or inlet of this name: it waits until then.
 pub(super) fn waits(scene: &Scene, name: &str) -> bool {
@@ -192,8 +199,10 @@ pub(super) fn held_grains<D: Dim>(
     }
     let along = |axis: usize| ((high - low).component(axis) / spacing + 1e-9).floor() + 1.0;
     let count = (0..D::N).map(along).product::<f64>();
-    if count > MOST_HELD {
-        problems.add(path, format!("{count:.0} held grains"), "at most 1e7", "");
+    let allowed =
+        if count > MOST_HELD { Err("at most 1e7".to_owned()) } else { room_for(count, BYTES_PER_HELD) };
+    if let Err(allowed) = allowed {
+        problems.add(path, format!("{count:.0} held grains"), allowed, "a larger spacing makes fewer");
         return None;
     }
     let mut chance = crate::validate::chance::Chance::new(seed);
@@ -268,6 +277,28 @@ fn inlet<D: Dim>(
         seed: spec.seed,
         runs: !waits(scene, &spec.name),
     })
+}
+
+/// Why inlets cannot run with these steps of the stages \[s\]: so many grains would be due at once that looking for their
+/// places would take all the time.
+pub(crate) fn crowded_inlets(scene: &Scene, steps: &[f64]) -> Vec<String> {
+    let longest = steps.iter().copied().fold(0.0, f64::max);
+    let look = STEPS_PER_LOOK as f64 * longest;
+    let crowded = scene.inlets.iter().enumerate().filter(|(_, inlet)| {
+        let due = inlet.rate * look;
+        due.min(inlet.number.map_or(f64::INFINITY, |number| number as f64)) > MOST_DUE
+    });
+    crowded
+        .map(|(k, inlet)| {
+            format!(
+                "`inlets.{k}.rate` is {} 1/s: {:.3e} grains would be due in {STEPS_PER_LOOK} steps of {longest:.3e} s; \
+                 allowed: at most {:.3e} 1/s, {MOST_DUE:e} grains at once",
+                inlet.rate,
+                inlet.rate * look,
+                MOST_DUE / look
+            )
+        })
+        .collect()
 }
 
 fn outlet<D: Dim>(path: &str, spec: &OutletSpec, problems: &mut Problems) -> Option<Outlet<D>> {

@@ -1,6 +1,6 @@
 //! The periodic cell of a scene: size, sample and control.
 
-use super::sample::{BuiltSample, grading_of};
+use super::sample::{BuiltSample, grading_of, refuse_many};
 use super::{NamedMaterials, Problems, nearest};
 use crate::scene::cell::{CellChange, CellSpec};
 use crate::scene::{Change, GradingSpec, Sample, Scene};
@@ -84,6 +84,9 @@ pub(super) fn fill<D: Dim>(
     }
     if *grains == 0 {
         problems.add("sample.grains", grains, "at least one grain", "");
+    }
+    if let Err(allowed) = refuse_many::<D>(*grains as f64) {
+        problems.add("sample.grains", grains, allowed, "");
     }
     if problems.0.len() > before {
         return None;

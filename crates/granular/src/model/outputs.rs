@@ -2,12 +2,18 @@
 
 use super::{Problems, nearest};
 use crate::folder::RESERVED;
+use crate::machine::room_for;
 use crate::observers::{Grid, Line};
 use crate::probes;
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Scene, Writer};
 use crate::voronoi;
 use granular_core::{Location, Shown, ShownAs, Solver};
 use std::path::{Component, Path};
+
+/// Memory that a point of a line takes, with the cells around it \[bytes\].
+const BYTES_PER_POINT: f64 = 400.0;
+/// Memory that a cell takes over which grains are averaged \[bytes\].
+const BYTES_PER_AVERAGE: f64 = 1000.0;
 
 /// Checks of schedules and files.
 pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
@@ -161,8 +167,19 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static st
 /// Whether grids of outputs are of grains and make sense.
 fn check_grids(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
     for (k, output) in scene.outputs.iter().enumerate() {
-        if let Some(Err(error)) = output.write.grid().map(|grid| Grid::of(grid, solver)) {
-            problems.add(format!("outputs.{k}.write.{}", error.key), error.value, error.allowed, "");
+        match output.write.grid().map(|grid| Grid::of(grid, solver)) {
+            Some(Err(error)) => {
+                problems.add(format!("outputs.{k}.write.{}", error.key), error.value, error.allowed, "");
+            }
+            Some(Ok(grid)) => {
+                let Location::Grid { cells, .. } = grid.location() else { continue };
+                let count: f64 = cells.iter().map(|&along| along as f64).product();
+                if let Err(allowed) = room_for(count, BYTES_PER_AVERAGE) {
+                    let place = format!("outputs.{k}.write.grid.spacing");
+                    problems.add(place, format!("so small that the grid has {count:.0} cells"), allowed, "");
+                }
+            }
+            None => {}
         }
     }
 }
@@ -216,6 +233,9 @@ fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
         let axes = if cells[2] > 1 { 3 } else { 2 };
         if *points < 2 {
             problems.add(format!("{path}.points"), points, "2 or more", "");
+        }
+        if let Err(allowed) = room_for(*points as f64, BYTES_PER_POINT) {
+            problems.add(format!("{path}.points"), points, allowed, "");
         }
         for (key, end) in [("from", from), ("to", to)] {
             if end.len() != axes {

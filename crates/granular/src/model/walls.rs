@@ -2,12 +2,16 @@
 
 use super::boundaries::{self, Surroundings};
 use super::{ColumnSize, Problems, Round};
+use crate::machine;
 use crate::scene::WallSpec;
 use crate::scene::boundaries::MotionSpec;
 use granular_core::units::Length;
 use granular_core::{Dim, Vector};
 use granular_dem::{MaterialId, SetupError, Wall};
 use std::path::Path;
+
+/// Memory that a byte of a file of triangles takes, with the tree of boxes around them \[bytes\].
+const BYTES_PER_BYTE: f64 = 20.0;
 
 /// What walls may stand beside.
 #[derive(Clone, Copy, Debug)]
@@ -192,7 +196,9 @@ fn mesh<D: Dim>(
 ) -> Result<Vec<Wall<D>>, SetupError> {
     let WallSpec::Mesh { name, file, unit, at, .. } = spec else { return Ok(vec![]) };
     let file = folder.join(file);
-    let triangles = match granular_io::read_stl(&file) {
+    let read = machine::readable(&file, BYTES_PER_BYTE)
+        .and_then(|()| granular_io::read_stl(&file).map_err(|error| error.to_string()));
+    let triangles = match read {
         Ok(triangles) => triangles,
         Err(error) => {
             let hint = "the path counts from the folder of the scene";

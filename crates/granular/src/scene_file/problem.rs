@@ -7,6 +7,9 @@ use super::{SceneText, Span};
 use serde::Serialize;
 use std::fmt;
 
+/// More problems than this are only counted.
+const MOST_TOLD: usize = 100;
+
 /// What is wrong with a scene, where, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
@@ -104,10 +107,29 @@ impl SceneProblem {
     /// The same problem with the line of the text that its path leads to, or that the nearest
     /// parent in the text leads to.
     #[must_use]
-    pub fn located_in(mut self, scene: &SceneText) -> Self {
+    pub fn located_in(self, scene: &SceneText) -> Self {
+        self.located_by(scene, &Tree::of(&scene.text))
+    }
+
+    /// All of these problems with their places, as [`SceneProblem::located_in`]. Of very many the first are told, and how
+    /// many more there are.
+    pub fn all_located_in(mut problems: Vec<Self>, scene: &SceneText) -> Vec<Self> {
+        let more = problems.len().saturating_sub(MOST_TOLD);
+        problems.truncate(MOST_TOLD);
+        // Reading the text for its places takes longer than all else.
+        let tree = Tree::of(&scene.text);
+        let mut located: Vec<Self> =
+            problems.into_iter().map(|problem| problem.located_by(scene, &tree)).collect();
+        if more > 0 {
+            let hint = "put those above right first: often many have one cause";
+            located.push(Self::of_file(scene.name.clone(), format!("{more} more problems")).with_hint(hint));
+        }
+        located
+    }
+
+    fn located_by(mut self, scene: &SceneText, tree: &Tree) -> Self {
         self.place.file = Some(scene.name.clone());
         let path = self.place.path.as_deref().and_then(parse_path);
-        let tree = Tree::of(&scene.text);
         let (Some((path, "")), Some(root)) = (path, tree.root.as_ref()) else { return self };
         match find(&scene.text, root, &path) {
             Found::Value { node, .. } => {

@@ -3,8 +3,12 @@
 use super::SceneText;
 use super::problem::SceneProblem;
 use super::words::nearest;
+use crate::machine::{self, in_words};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
+
+/// Memory that a byte of a text takes, with its tokens and the scene \[bytes\].
+const BYTES_PER_BYTE: f64 = 100.0;
 
 impl SceneText {
     /// Reads a file, or standard input for `-`.
@@ -14,15 +18,24 @@ impl SceneText {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneProblem> {
         let path = path.as_ref();
         let mut bytes = Vec::new();
+        let most = machine::most(BYTES_PER_BYTE);
         let (name, outcome) = if path == Path::new("-") {
-            ("<stdin>".to_owned(), std::io::stdin().lock().read_to_end(&mut bytes))
+            ("<stdin>".to_owned(), std::io::stdin().lock().take(most as u64 + 1).read_to_end(&mut bytes))
         } else if path.is_dir() {
             return Err(folder(path));
         } else {
             let file = std::fs::File::open(path);
-            (path.display().to_string(), file.and_then(|mut file| file.read_to_end(&mut bytes)))
+            (
+                path.display().to_string(),
+                file.and_then(|file| file.take(most as u64 + 1).read_to_end(&mut bytes)),
+            )
         };
         match outcome {
+            Ok(length) if length as f64 > most => {
+                let reason =
+                    format!("it is longer than {}, for which this machine has memory", in_words(most));
+                Err(SceneProblem::of_file(name, format!("cannot be read: {reason}")))
+            }
             Ok(_) => Self::from_bytes(name, bytes),
             Err(error) if error.kind() == ErrorKind::NotFound => Err(missing(path)),
             Err(error) => Err(SceneProblem::of_file(name, format!("cannot be read: {error}"))),

@@ -1,13 +1,17 @@
 //! What changes from run to run of a sweep: `--set` with several values.
 
+use crate::machine::room_for;
 use crate::scene_file::{SceneProblem, split_assignment};
+use std::collections::BTreeSet;
 
 /// Decimal digits of the values within a range; its ends are kept as they are.
 const DIGITS_EVEN: usize = 12;
 /// The same for even steps of the logarithm, where round values are rare.
 const DIGITS_LOG: usize = 6;
-/// More values than anybody means.
+/// More values, or runs, than anybody means.
 const MOST: usize = 100_000;
+/// Memory that a run takes beside its text, of which it holds two \[bytes\].
+const BYTES_PER_RUN: f64 = 2000.0;
 
 /// A place of the scene and the values that it takes; a plain `--set` has one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,8 +54,9 @@ impl Axis {
                 }
             }
         }
-        if let Some(twice) = values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
-            let message = format!("`{}` stands there twice; allowed: each value once", twice.1);
+        let mut known = BTreeSet::new();
+        if let Some(twice) = values.iter().find(|value| !known.insert(*value)) {
+            let message = format!("`{twice}` stands there twice; allowed: each value once");
             return Err(wrong(message, "leave one of them out"));
         }
         Ok(Self { path: path.to_owned(), values })
@@ -67,6 +72,23 @@ impl Axis {
 pub(super) fn label_of(value: &str) -> String {
     let inner = value.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
     inner.filter(|inner| !inner.contains(['"', '\\'])).unwrap_or(value).to_owned()
+}
+
+/// Refuses a grid of more runs than anybody means, or than the memory of this machine holds with scenes of this length
+/// \[bytes\].
+pub(super) fn refuse_many(axes: &[Axis], length: usize) -> Result<(), SceneProblem> {
+    let count: f64 = axes.iter().map(|axis| axis.values.len() as f64).product();
+    let allowed = if count > MOST as f64 {
+        Err(format!("at most {MOST} runs"))
+    } else {
+        room_for(count, BYTES_PER_RUN + 2.0 * length as f64)
+    };
+    allowed.map_err(|allowed| {
+        let counts: Vec<String> =
+            axes.iter().filter(|axis| axis.varies()).map(|axis| axis.values.len().to_string()).collect();
+        let message = format!("the axes make {} = {count:.0} runs; allowed: {allowed}", counts.join(" x "));
+        SceneProblem::of_file("--set", message).with_hint("give fewer values, or several sweeps")
+    })
 }
 
 /// The values of every point of the grid, one per axis; the last axis is the fastest.

@@ -3,6 +3,7 @@
 use super::{Plan, State, lock_path, state};
 use crate::failure::Failure;
 use crate::lock::Lock;
+use crate::machine::most_threads;
 use crate::progress::{duration, say};
 use crate::run::{self, Interrupt};
 use crate::scene_file::SceneProblem;
@@ -109,7 +110,7 @@ impl Plan {
             let (left_alone, all) = (chosen.len() - waiting.len(), chosen.len());
             say(format_args!("{left_alone} of {all} runs are done or failed before and are left alone"));
         }
-        let jobs = work.jobs.clamp(1, waiting.len().max(1));
+        let jobs = work.jobs.clamp(1, waiting.len().max(1)).min(most_threads());
         let threads = (rayon::current_num_threads() / jobs).max(1);
         let (next, troubles) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let collected = Mutex::new(Instant::now());

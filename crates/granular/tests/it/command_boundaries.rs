@@ -4,7 +4,7 @@ use crate::support::Scratch;
 use std::fs;
 
 /// Spheres that rain on a pyramid from a file and on held grains, between sides of which one shakes and one presses.
-const SPACE: &str = r#"Scene(
+pub(crate) const SPACE: &str = r#"Scene(
     version: 1, dimension: Space, gravity: [0.0, 0.0, -9.81],
     materials: { "glass": (density: "2650 kg/m^3", normal_stiffness: "1e4 N/m", restitution: 0.5, friction: 0.4) },
     walls: [
@@ -30,7 +30,7 @@ const SPACE: &str = r#"Scene(
     ]))],
 )"#;
 
-const PYRAMID: &str = "solid pyramid\n\
+pub(crate) const PYRAMID: &str = "solid pyramid\n\
     facet normal 0 0 0\nouter loop\nvertex -4 -4 0\nvertex 4 -4 0\nvertex 0 0 4\nendloop\nendfacet\n\
     facet normal 0 0 0\nouter loop\nvertex 4 -4 0\nvertex 4 4 0\nvertex 0 0 4\nendloop\nendfacet\n\
     facet normal 0 0 0\nouter loop\nvertex 4 4 0\nvertex -4 4 0\nvertex 0 0 4\nendloop\nendfacet\n\

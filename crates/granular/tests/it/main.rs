@@ -16,6 +16,7 @@ mod command_push;
 mod command_sample;
 mod command_snapshots;
 mod command_sweep;
+mod fuzz;
 mod scenes;
 mod stability;
 mod support;

@@ -1,6 +1,6 @@
 //! Grains in a cylinder that stands on the floor.
 
-use super::{BuiltSample, LOOSE_GAP, MOST_GRAINS, Refusal, SETTLED, check_sizes, grading_of};
+use super::{BuiltSample, LOOSE_GAP, Refusal, SETTLED, check_sizes, grading_of, refuse_many};
 use crate::model::region::Region;
 use crate::model::{ColumnSize, Problems, Round};
 use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
@@ -80,10 +80,10 @@ impl Cylinder<'_> {
                 (shape * (0.5 * width.value()).powi(3) / mean).round().max(1.0)
             }
         };
-        if count > MOST_GRAINS {
+        refuse_many::<D>(count).map_err(|allowed| {
             let value = format!("a cylinder of {count:.0} grains");
-            return Err(Refusal { path: "sample.extent", value, allowed: "at most 1e8 grains".to_owned() });
-        }
+            Refusal { path: "sample.extent", value, allowed }
+        })?;
         let mut radii = grading.sample::<D>(count as usize, self.seed)?;
         let radius = match self.extent {
             Extent::Width(width) => 0.5 * width.value(),
