@@ -443,11 +443,11 @@ impl<D: Dim> Dem<D> {
         let stiffer = match self.options.contact {
             ContactModel::Linear => {
                 let factor = crate::limits::softer_than(share / allowed, crate::limits::LINEAR);
-                format!("raise the normal stiffness at least {factor:e}-fold")
+                format!("raise the normal stiffness at least {factor}-fold")
             }
             ContactModel::Hertz => {
                 let factor = crate::limits::softer_than(share / allowed, crate::limits::HERTZ);
-                format!("raise Young's modulus at least {factor:e}-fold")
+                format!("raise Young's modulus at least {factor}-fold")
             }
         };
         StepError::TooStiff {

@@ -143,10 +143,10 @@ impl<D: Dim> Dem<D> {
             ContactModel::Linear => {
                 let factor = softer_than(too_much, LINEAR);
                 let target = rounded_up(factor * pair.stiffness);
-                format!("; raise the normal stiffness {factor:e}-fold, to {target:e} N/m for {}", pair.names)
+                format!("; raise the normal stiffness {factor}-fold, to {target:e} N/m for {}", pair.names)
             }
             ContactModel::Hertz => {
-                format!("; raise Young's modulus {:e}-fold for {}", softer_than(too_much, HERTZ), pair.names)
+                format!("; raise Young's modulus {}-fold for {}", softer_than(too_much, HERTZ), pair.names)
             }
         }
     }
@@ -207,7 +207,10 @@ impl<D: Dim> Dem<D> {
 
     /// Which bodies overlap most, where they are, and by how much.
     fn deepest_named(&self) -> String {
-        let Some((_, contact)) = self.deepest_contact() else { return "nothing overlaps".to_owned() };
+        let Some((share, contact)) = self.deepest_contact() else { return "nothing overlaps".to_owned() };
+        if share <= SOFT {
+            return "the deepest of all contacts".to_owned();
+        }
         let grain = |index: usize| {
             let place: Vec<String> =
                 (0..D::N).map(|axis| format!("{:.6}", self.grains.position[index].component(axis))).collect();

@@ -266,16 +266,25 @@ fn draw_mark(drawing: &mut Drawing, area: Area, mark: &Mark, place: &dyn Fn([f64
     if mark.label.is_empty() || spots.is_empty() {
         return;
     }
-    let middle = |k: usize| {
-        let ends = spots.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], spot| {
+    let ends = |k: usize| {
+        spots.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], spot| {
             [low.min(spot[k]), high.max(spot[k])]
-        });
-        0.5 * (ends[0] + ends[1])
+        })
     };
-    // Beside the line, and not beyond the panel.
+    let ([left, right], [top, bottom]) = (ends(0), ends(1));
     let half = 0.5 * Font::new(Weight::Regular).width(&mark.label, LABEL) + 2.0;
-    let x = middle(0).clamp(area.left + half, (area.right - half).max(area.left + half));
-    let y = (middle(1) - 4.0).clamp(area.top + LABEL, (area.bottom - 3.0).max(area.top + LABEL));
+    // Within what encloses it, below a point, at the top of what is upright, and else above the line.
+    let y = match spots.len() {
+        1 => bottom + 1.4 * LABEL,
+        _ if mark.closed && right - left > 2.0 * half && bottom - top > LABEL => 0.5 * (top + bottom + LABEL),
+        _ if !mark.closed && bottom - top > right - left => top.max(area.top) + 1.6 * LABEL,
+        _ => top - 4.0,
+    };
+    let x = (0.5 * (left + right)).clamp(area.left + half, (area.right - half).max(area.left + half));
+    let y = y.clamp(area.top + LABEL, (area.bottom - 3.0).max(area.top + LABEL));
+    // Grains behind it would make it unreadable.
+    let paper = Area { left: x - half, top: y - LABEL, right: x + half, bottom: y + 3.0 };
+    drawing.rectangle(paper, Some(Fill { colour: Colour::WHITE, opacity: 0.8 }), None);
     let lettering = Lettering { colour: Colour::of_series(1), ..Lettering::plain(LABEL, Anchor::Middle) };
     drawing.text(&mark.label, [x, y], lettering);
 }
