@@ -8,6 +8,7 @@ mod command_bad_input;
 mod command_boundaries;
 mod command_coarse;
 mod command_disk;
+mod command_figures;
 mod command_files;
 mod command_flow;
 mod command_interrupt;
