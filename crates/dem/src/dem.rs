@@ -10,7 +10,7 @@ use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
 use crate::moving::{Movers, Reaction};
-use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::setup::{ContactModel, LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::shaking::Shaken;
 use crate::traffic::Traffic;
 use crate::wall::{Shape, Wall};
@@ -438,11 +438,23 @@ impl<D: Dim> Dem<D> {
 
     pub(crate) fn too_deep(&self, trouble: Trouble) -> StepError {
         let id = self.grains.id[trouble.first as usize];
+        let (share, allowed) = (trouble.overlap / trouble.radius, crate::kernel::DEEPEST);
+        // As if this was the hardest impact; it may be harder still a step later.
+        let stiffer = match self.options.contact {
+            ContactModel::Linear => {
+                let factor = crate::limits::softer_than(share / allowed, crate::limits::LINEAR);
+                format!("raise the normal stiffness at least {factor}-fold")
+            }
+            ContactModel::Hertz => {
+                let factor = crate::limits::softer_than(share / allowed, crate::limits::HERTZ);
+                format!("raise Young's modulus at least {factor}-fold")
+            }
+        };
         StepError::TooStiff {
             what: format!("overlap over radius at grain {id} in step {}", self.steps),
-            value: trouble.overlap / trouble.radius,
-            allowed: crate::kernel::DEEPEST,
-            hint: "raise the normal stiffness or lower the speed of the grains".to_owned(),
+            value: share,
+            allowed,
+            hint: format!("{stiffer}, or lower the speed of the grains"),
         }
     }
 }

@@ -2,11 +2,12 @@
 
 mod stiffest;
 
+use crate::contacts::{Contact, Partner};
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
-use crate::setup::LeverArm;
+use crate::setup::{ContactModel, LeverArm};
 use crate::wall::Shape;
-use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule};
+use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule, Vector};
 use stiffest::{Oscillator, Stiffest};
 
 /// Overlap over radius above which an impact is called too soft.
@@ -75,7 +76,7 @@ impl<D: Dim> Dem<D> {
             allowed: 100.0 * SOFT,
             unit: "% of the radius",
             refuses: true,
-            why: "overlapping grains fly apart; place them apart or raise the stiffness".to_owned(),
+            why: self.deepest_named(),
         });
     }
 
@@ -126,7 +127,27 @@ impl<D: Dim> Dem<D> {
             allowed: 100.0 * crate::kernel::DEEPEST,
             unit: "% of the radius",
             refuses: true,
-            why: format!("two grains that meet at {fastest:.3} m/s; raise the stiffness"),
+            why: format!(
+                "two grains that meet at {fastest:.3} m/s{}",
+                self.stiffer(hardest, deepest / smallest)
+            ),
+        }
+    }
+
+    /// How stiff the contacts of a pair must be for an allowed overlap, when that of its hardest impact over the radius is
+    /// too large.
+    fn stiffer(&self, pair: Option<&Stiffest>, overlap: f64) -> String {
+        let too_much = overlap / crate::kernel::DEEPEST;
+        let Some(pair) = pair.filter(|_| too_much > 1.0) else { return String::new() };
+        match self.options.contact {
+            ContactModel::Linear => {
+                let factor = softer_than(too_much, LINEAR);
+                let target = rounded_up(factor * pair.stiffness);
+                format!("; raise the normal stiffness {factor}-fold, to {target:e} N/m for {}", pair.names)
+            }
+            ContactModel::Hertz => {
+                format!("; raise Young's modulus {}-fold for {}", softer_than(too_much, HERTZ), pair.names)
+            }
         }
     }
 
@@ -164,16 +185,50 @@ impl<D: Dim> Dem<D> {
 
     /// Largest overlap over the radius of the smaller grain.
     pub fn deepest_overlap(&self) -> f64 {
-        let mut deepest = 0.0_f64;
+        self.deepest_contact().map_or(0.0, |(share, _)| share)
+    }
+
+    /// The contact whose overlap over the radius of the smaller grain is largest, and that share.
+    fn deepest_contact(&self) -> Option<(f64, Contact<D>)> {
+        let mut deepest: Option<(f64, Contact<D>)> = None;
         self.visit_contacts(&mut |contact| {
             let own = self.grains.radius[contact.first];
             let smaller = match contact.partner {
-                crate::Partner::Grain(second) => own.min(self.grains.radius[second]),
-                crate::Partner::Wall(_) => own,
+                Partner::Grain(second) => own.min(self.grains.radius[second]),
+                Partner::Wall(_) => own,
             };
-            deepest = deepest.max(contact.overlap / smaller);
+            let share = contact.overlap / smaller;
+            if deepest.as_ref().is_none_or(|(most, _)| share > *most) {
+                deepest = Some((share, contact));
+            }
         });
         deepest
+    }
+
+    /// Which bodies overlap most, where they are, and by how much.
+    fn deepest_named(&self) -> String {
+        let Some((share, contact)) = self.deepest_contact() else { return "nothing overlaps".to_owned() };
+        if share <= SOFT {
+            return "the deepest of all contacts".to_owned();
+        }
+        let grain = |index: usize| {
+            let place: Vec<String> =
+                (0..D::N).map(|axis| format!("{:.6}", self.grains.position[index].component(axis))).collect();
+            format!("grain {} at ({}) m", self.grains.id[index], place.join(", "))
+        };
+        let ids = &self.grains.id;
+        let (first, second) = match contact.partner {
+            // Their order in memory means nothing to who placed them.
+            Partner::Grain(second) if ids[second] < ids[contact.first] => {
+                (grain(second), grain(contact.first))
+            }
+            Partner::Grain(second) => (grain(contact.first), grain(second)),
+            Partner::Wall(wall) => (grain(contact.first), format!("wall `{}`", self.walls[wall].name)),
+        };
+        let overlap = contact.overlap;
+        format!(
+            "{first} and {second} overlap by {overlap:.3e} m and would fly apart; place them apart; grains count from 0"
+        )
     }
 
     pub(crate) fn report_memory(&self) -> Memory {
@@ -209,6 +264,26 @@ impl<D: Dim> Dem<D> {
         let tension = if self.options.tension == Tension::Cut { "tension cut" } else { "tension kept" };
         format!("{} {}s, {}, {tension}, {arm}", self.size().0, D::BALL, self.pairs.law_name())
     }
+}
+
+/// Power of the overlap of an impact with which its stiffness falls: a linear contact has `overlap ~ k^(-1/2)`.
+pub(crate) const LINEAR: f64 = 2.0;
+/// A Hertz contact has `overlap ~ E^(-2/5)`.
+pub(crate) const HERTZ: f64 = 2.5;
+
+/// By which factor contacts must be stiffer for an overlap that is `too_much` times what is allowed.
+pub(crate) fn softer_than(too_much: f64, power: f64) -> f64 {
+    rounded_up(too_much.powf(power))
+}
+
+/// Rounded up to two digits, so that advice which is followed is enough.
+fn rounded_up(value: f64) -> f64 {
+    if !(value > 0.0 && value.is_finite()) {
+        return value;
+    }
+    let unit = 10.0_f64.powi(value.log10().floor() as i32 - 1);
+    // Printed and read, so that no digits of round-off are shown.
+    format!("{:.1e}", (value / unit).ceil() * unit).parse().unwrap_or(value)
 }
 
 /// Largest stable step of the scheme for a grain with `neighbours` equal contacts.

@@ -196,7 +196,12 @@ fn find(root: &mut [u32], mut index: u32) -> u32 {
 }
 
 const NUMBERS: &[(&str, &str, &str)] = &[
-    ("front", "m", "farthest point of the main mass along x"),
+    (
+        "front",
+        "m",
+        "farthest point along x of the main mass: the largest set of grains that touch or nearly do; it falls back when \
+         grains at the edge part from it",
+    ),
     ("height", "m", "highest point of the main mass"),
     ("potential_energy", "J", "energy in the field of gravity, zero at the origin"),
     ("kinetic_energy", "J", "energy of motion, without rotation; in a cell relative to its flow"),

@@ -1,6 +1,7 @@
 //! What is known before the first step: limits, memory, time, and what was left out.
 
 use crate::failure::Failure;
+use crate::figures::{self, Extents};
 use crate::model::{self, Action, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, SolverSpec, Stage};
@@ -9,6 +10,7 @@ use crate::voronoi;
 use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Wall time spent on measuring the speed of a scene.
@@ -33,7 +35,15 @@ pub struct Report {
     pub memory: Memory,
     /// Longest run time with the present number of threads \[s\], from a measured burst of steps.
     pub estimated_seconds: f64,
-    /// What is no reason to refuse the run, but makes little of it.
+    /// What the grains take up; none without any.
+    sample: Option<Extents>,
+    /// Gravity at the start \[m/s^2\].
+    gravity: Vec<f64>,
+    /// Axis that points up.
+    up: usize,
+    /// Files of the drawing, if one was asked for.
+    pub drawing: Option<[PathBuf; 2]>,
+    /// What is no reason to refuse the run, but perhaps not as it was meant.
     pub warnings: Vec<String>,
     /// Reasons to refuse the run.
     pub problems: Vec<String>,
@@ -102,7 +112,7 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
 /// # Errors
 /// When the scene is wrong. A scene that would be refused gives a report with problems.
 pub fn check(text: &SceneText) -> Result<Report, Failure> {
-    check_within(text, PROBE)
+    measured(text, None, PROBE)
 }
 
 /// The same with another wall time to measure the speed in; at least one step is taken.
@@ -110,8 +120,26 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
 /// # Errors
 /// As [`check`].
 pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure> {
+    measured(text, None, probe)
+}
+
+/// The same, with a drawing of the scene before its first step, as `.svg` and `.png`.
+///
+/// # Errors
+/// As [`check`], and when the drawing cannot be written.
+pub fn check_and_draw(text: &SceneText, drawing: Option<&Path>) -> Result<Report, Failure> {
+    measured(text, drawing, PROBE)
+}
+
+fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result<Report, Failure> {
     let (scene, mut model) = read(text)?;
+    let drawing = drawing.map(|path| figures::draw_initial(&scene, &model, path)).transpose()?;
+    let sample = Extents::of(model.simulation.solver());
+    let mut warnings = figures::times_beyond(&scene, model.column);
+    warnings.extend(sample.and_then(|sample| apart(&sample, figures::ends_of_walls(&scene, model.column))));
     let (limits, steps, problems) = limits_of(&scene, &model);
+    // Measuring the speed lets grains come in.
+    let size = model.simulation.solver().size();
     let mut memory = model.simulation.solver().memory();
     if voronoi::is_unused(&scene, model.simulation.solver()) {
         memory.left_out.push("Voronoi cells: no output asks for them".to_owned());
@@ -124,18 +152,22 @@ pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
     let pushes = pushes(&scene, &model);
-    let warnings = model::warnings(&scene, &model);
+    warnings.extend(model::warnings(&scene, &model));
     let estimated_seconds =
         if problems.is_empty() { count * seconds_per_step(&mut model, steps[0], probe) } else { f64::NAN };
     Ok(Report {
         scene: text.name().to_owned(),
-        size: model.simulation.solver().size(),
+        size,
         solver: model.simulation.solver().name(),
         limits,
         stages,
         pushes,
         memory,
         estimated_seconds,
+        sample,
+        gravity: scene.gravity.iter().map(|value| value.value()).collect(),
+        up: model.up,
+        drawing,
         warnings,
         problems,
     })
@@ -169,6 +201,37 @@ fn seconds_per_step(model: &mut Model, dt: f64, probe: Duration) -> f64 {
     begun.elapsed().as_secs_f64() / f64::from(steps)
 }
 
+/// What is said when all walls that have ends lie beside the sample.
+fn apart(sample: &Extents, walls: Option<[f64; 2]>) -> Option<String> {
+    let ([left, right], [first, last]) = ([sample.low[0], sample.high[0]], walls?);
+    (right < first || left > last).then(|| {
+        format!(
+            "the sample and the walls that have ends do not meet: it lies from {} to {} along x, they from {} to {}; \
+             --draw shows them",
+            length(left),
+            length(right),
+            length(first),
+            length(last)
+        )
+    })
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A length with four digits, in the unit that suits it.
+fn length(metres: f64) -> String {
+    let (value, unit) = match metres.abs() {
+        size if size >= 1.0 => (metres, "m"),
+        size if size >= 1e-4 => (1e3 * metres, "mm"),
+        size if size < 1e-9 => (0.0, "mm"),
+        _ => (1e6 * metres, "um"),
+    };
+    let decimals = (3.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 4.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{} {unit}", if text == "-0" { "0" } else { text })
+}
+
 /// A refusal that names the scene.
 pub(crate) fn refusal(scene: &str, problems: &[String]) -> Failure {
     Failure::Refused(problems.iter().map(|problem| format!("{scene}: {problem}")).collect())
@@ -178,6 +241,35 @@ impl Report {
     /// The failure that the problems are.
     pub fn refusal(&self) -> Failure {
         refusal(&self.scene, &self.problems)
+    }
+
+    /// Where the grains are, and which way they fall.
+    fn write_sample(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(sample) = &self.sample {
+            let depth =
+                if self.up == 2 { format!("{} deep, ", length(sample.size(1))) } else { String::new() };
+            writeln!(
+                f,
+                "\nsample    {} wide, {depth}{} high: from {} to {} along {}, from {} to {} along x",
+                length(sample.size(0)),
+                length(sample.size(self.up)),
+                length(sample.low[self.up]),
+                length(sample.high[self.up]),
+                AXES[self.up],
+                length(sample.low[0]),
+                length(sample.high[0]),
+            )?;
+        }
+        let size = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let along = self.gravity.iter().position(|g| g.abs() == size);
+        match along {
+            _ if size == 0.0 => writeln!(f, "gravity   none"),
+            Some(axis) => {
+                let sign = if self.gravity[axis] < 0.0 { "-" } else { "+" };
+                writeln!(f, "gravity   {size} m/s^2 along {sign}{}", AXES[axis])
+            }
+            None => writeln!(f, "gravity   {:?} m/s^2", self.gravity),
+        }
     }
 
     /// The report as JSON.
@@ -202,6 +294,12 @@ impl Report {
             "bytes_per_item": self.memory.bytes_per_item,
             "estimated_seconds": self.estimated_seconds,
             "left_out": self.memory.left_out,
+            "sample": self.sample.map(|sample| json!({
+                "width": sample.size(0), "height": sample.size(self.up), "lowest": sample.low[self.up],
+                "highest": sample.high[self.up], "low": sample.low, "high": sample.high, "unit": "m",
+            })),
+            "gravity": self.gravity,
+            "drawing": self.drawing,
             "warnings": self.warnings,
             "problems": self.problems,
         })
@@ -212,6 +310,7 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (count, item) = self.size;
         writeln!(f, "{}: {count} {item}s, solver {}", self.scene, self.solver)?;
+        self.write_sample(f)?;
         writeln!(f, "\nstages")?;
         for (name, dt, longest) in &self.stages {
             writeln!(
@@ -260,14 +359,43 @@ impl fmt::Display for Report {
         for left_out in &self.memory.left_out {
             writeln!(f, "  {left_out}")?;
         }
-        if !self.warnings.is_empty() {
-            writeln!(f, "\nwarnings")?;
-            for warning in &self.warnings {
-                writeln!(f, "  {warning}")?;
-            }
+        if let Some([svg, png]) = &self.drawing {
+            writeln!(f, "\ndrawing   {}, {}", svg.display(), png.display())?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "\nwarning: {warning}")?;
         }
         // What the problems are, the failure says.
         let verdict = if self.problems.is_empty() { "the scene can be run" } else { "the scene is refused" };
         writeln!(f, "\n{verdict}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_four_digits_and_a_unit_that_suits_them() {
+        let cases = [
+            (0.0703412, "70.34 mm"),
+            (2.2, "2.2 m"),
+            (0.0, "0 mm"),
+            (3e-18, "0 mm"),
+            (1.25e-5, "12.5 um"),
+            (-0.004, "-4 mm"),
+        ];
+        for (metres, text) in cases {
+            assert_eq!(length(metres), text);
+        }
+        assert_eq!(length(1234.5678), "1235 m");
+    }
+
+    #[test]
+    fn a_sample_beside_all_walls_that_have_ends_is_told() {
+        let sample = Extents { low: [0.0; 3], high: [0.05, 0.04, 0.0] };
+        let said = apart(&sample, Some([0.1, 0.2])).unwrap();
+        assert!(said.contains("it lies from 0 mm to 50 mm along x, they from 100 mm to 200 mm"), "{said}");
+        assert_eq!((apart(&sample, Some([-0.1, 0.01])), apart(&sample, None)), (None, None));
     }
 }

@@ -3,6 +3,7 @@
 mod bench;
 mod calibrate;
 mod plot;
+mod summary;
 mod sweep;
 mod validate;
 
@@ -59,12 +60,16 @@ enum Verb {
         #[arg(long)]
         list: bool,
     },
-    /// Check a scene: limits, bounds, memory, run time, and what is left out. Runs nothing.
+    /// Check a scene: sample, limits, bounds, memory, run time, and what is left out. Runs nothing.
     Check {
         /// Scene file, or - for standard input.
         scene: PathBuf,
         #[command(flatten)]
         edits: Edits,
+        /// Draw the scene before its first step: grains, walls, where grains come and go, obstacles of a fluid. Writes
+        /// the file as SVG and beside it the same as PNG.
+        #[arg(long, value_name = "FILE")]
+        draw: Option<PathBuf>,
     },
     /// Run a scene in a new folder.
     Run {
@@ -158,8 +163,8 @@ impl Verb {
     fn execute(self, common: &Common) -> Result<(), Failure> {
         match self {
             Self::New { template, list: _ } => new(common, template.as_deref()),
-            Self::Check { scene, edits } => {
-                let report = check::check(&read(&scene, &edits)?)?;
+            Self::Check { scene, edits, draw } => {
+                let report = check::check_and_draw(&read(&scene, &edits)?, draw.as_deref())?;
                 show(common, &report.to_json(), || report.to_string());
                 if report.problems.is_empty() { Ok(()) } else { Err(report.refusal()) }
             }
@@ -167,12 +172,12 @@ impl Verb {
                 let text = read(&scene, &edits)?;
                 let out = out.unwrap_or_else(|| default_folder(&scene));
                 let facts = run::run(&text, &out, force, common.quiet, &interrupt(common, &out)?)?;
-                show(common, &result(&facts), || summary(&facts, &out));
+                show(common, &result(&facts), || summary::of_result(&facts, &out));
                 Ok(())
             }
             Self::Resume { folder } => {
                 let facts = run::resume(&folder, common.quiet, &interrupt(common, &folder)?)?;
-                show(common, &result(&facts), || summary(&facts, &folder));
+                show(common, &result(&facts), || summary::of_result(&facts, &folder));
                 Ok(())
             }
             Self::Plot(verb) => verb.execute(common),
@@ -309,38 +314,6 @@ fn failure_json(failure: &Failure) -> Value {
     json!({ "exit": failure.code(), "problems": problems })
 }
 
-fn summary(facts: &Value, folder: &Path) -> String {
-    let number = |key: &str| facts[key].as_f64().unwrap_or(f64::NAN);
-    let mut text = format!(
-        "done: {:.6} s in {} steps and {:.1} s of wall time ({:.2e} grain-steps/s)\n",
-        number("simulated_seconds"),
-        facts["steps"],
-        number("wall_seconds"),
-        number("rate"),
-    );
-    if let Some(metrics) = facts["metrics"].as_object() {
-        for (name, value) in metrics {
-            let unit = facts["units"][name].as_str().filter(|unit| *unit != "1").unwrap_or_default();
-            let value = six_digits(value.as_f64().unwrap_or(f64::NAN));
-            let line = format!("  {:<26} {value} {unit}", name.replace('_', " "));
-            text += &(line.trim_end().to_owned() + "\n");
-        }
-    }
-    text + &format!(
-        "  {:<26} {}\n  {:<26} {}\n",
-        "state hash",
-        facts["state_hash"].as_str().unwrap_or(""),
-        "run folder",
-        folder.display()
-    )
-}
-
-/// A number as people read it, to about six digits.
-fn six_digits(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 || (1e-3..1e6).contains(&size) { format!("{value:.6}") } else { format!("{value:.5e}") }
-}
-
 /// Prints a template, or lists all by the first line of each.
 fn new(common: &Common, template: Option<&str>) -> Result<(), Failure> {
     let templates = granular::TEMPLATES;
@@ -373,7 +346,11 @@ fn new(common: &Common, template: Option<&str>) -> Result<(), Failure> {
 fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
     let facts = match path {
         None => folder::provenance(),
-        Some(path) if path.is_dir() => folder::RunFolder::open(path)?.facts()?,
+        Some(path) if path.is_dir() => {
+            let facts = folder::RunFolder::open(path)?.facts()?;
+            show(common, &facts, || summary::of_run(&facts, path));
+            return Ok(());
+        }
         Some(path) => return shown(common, path),
     };
     show(common, &facts, || pretty(&facts) + "\n");

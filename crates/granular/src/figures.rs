@@ -3,22 +3,29 @@
 mod column;
 mod flow;
 mod fluid;
+mod frames;
 pub(crate) mod impact;
+mod initial;
 mod map;
 mod radial;
+mod series;
 pub(crate) mod spectrum;
 mod voronoi;
+mod walls;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::model::ColumnSize;
 use crate::observers::number_of;
 use crate::run::StageRecord;
-use crate::scene::{FigureSpec, ReferenceCurve, Scene};
+use crate::scene::{Change, FigureSpec, Scene, Stage, WallSpec};
 pub(crate) use column::running_median;
+use frames::Frames;
 use granular_core::{ShownAs, Simulation};
-use granular_io::figure::{Axis, Chart, Series, Style};
-use granular_io::{Table, read_table};
+use granular_io::{Figure, Table, read_table};
+pub(crate) use initial::{Extents, draw as draw_initial, ends_of_walls};
+use serde_json::{Value, json};
+use series::with_references;
 use std::path::PathBuf;
 
 /// Lengths and times that a figure is drawn in.
@@ -32,86 +39,184 @@ struct Units {
     scaled: bool,
 }
 
-/// Draws all figures of a scene. Returns their paths without ending.
-///
-/// # Errors
-/// When a file of the run cannot be read, or a figure cannot be written.
-pub fn draw(
-    scene: &Scene,
-    folder: &RunFolder,
-    records: &[StageRecord],
+/// What came of the figures of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Paths of those that were drawn, without ending.
+    pub paths: Vec<PathBuf>,
+    /// Which could not be drawn, and why.
+    pub failed: Vec<String>,
+    /// What those that were drawn leave out, and why.
+    pub left_out: Vec<String>,
+}
+
+impl Drawn {
+    /// What `run.json` says of them.
+    pub(crate) fn to_json(&self) -> Value {
+        json!({ "drawn": self.paths.len(), "failed": self.failed, "left_out": self.left_out })
+    }
+}
+
+/// Draws all figures of a scene. A figure that cannot be drawn does not keep the others from it.
+pub fn draw(scene: &Scene, folder: &RunFolder, records: &[StageRecord], column: Option<ColumnSize>) -> Drawn {
+    let run = Run { scene, folder, records, column };
+    let mut drawn = Drawn::default();
+    for (k, spec) in scene.figures.iter().enumerate() {
+        let (place, name) = (format!("figures.{k}"), spec.path());
+        match run.save(spec) {
+            Ok((path, left_out)) => {
+                drawn.paths.push(path);
+                drawn.left_out.extend(left_out.map(|left_out| format!("{place} `{name}`: {left_out}")));
+            }
+            Err(failure) => {
+                let reason = match failure {
+                    Failure::Io(reason) => reason,
+                    other => other.to_string(),
+                };
+                drawn.failed.push(format!("{place} `{name}` was not drawn: {reason}"));
+            }
+        }
+    }
+    drawn
+}
+
+/// A run whose figures are drawn.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    scene: &'a Scene,
+    folder: &'a RunFolder,
+    records: &'a [StageRecord],
     column: Option<ColumnSize>,
-) -> Result<Vec<PathBuf>, Failure> {
-    let mut paths = Vec::new();
-    for spec in &scene.figures {
-        let path = folder.path().join(spec.path());
+}
+
+/// A figure, and what it leaves out.
+type Made = (Figure, Option<String>);
+
+impl Run<'_> {
+    /// Draws and saves a figure.
+    fn save(&self, spec: &FigureSpec) -> Result<(PathBuf, Option<String>), Failure> {
+        let path = self.folder.path().join(spec.path());
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
         }
+        let (figure, left_out) = self.figure(spec)?;
+        figure.save(&path)?;
+        Ok((path, left_out))
+    }
+
+    fn figure(&self, spec: &FigureSpec) -> Result<Made, Failure> {
+        match spec {
+            FigureSpec::Flow { .. }
+            | FigureSpec::Cells { .. }
+            | FigureSpec::ForceChains { .. }
+            | FigureSpec::RadialProfile { .. }
+            | FigureSpec::Map { .. } => self.of_frames(spec),
+            _ => self.of_table(spec),
+        }
+    }
+
+    /// A figure of the rows of a table.
+    fn of_table(&self, spec: &FigureSpec) -> Result<Made, Failure> {
+        let Self { scene, folder, column, .. } = *self;
         let figure = match spec {
-            FigureSpec::Series { table, columns, stage, references, .. } => {
-                let stage = stage.as_ref().map(|stage| record(records, stage)).transpose()?;
-                let units = stage.map(|stage| units(scene, stage, column));
-                let chart = series(scene, &table_of(folder, table)?, columns, units);
-                with_references(chart, references).figure()
+            FigureSpec::Series { table, columns: names, stage, references, .. } => {
+                let units = self.units_of(stage.as_deref())?;
+                let columns = series::Columns { names, over: None, units, references };
+                series::panels(scene, &table_of(folder, table)?, &columns).figure()
+            }
+            FigureSpec::Curve { table, x, columns: names, stage, references, .. } => {
+                let (units, over) = (self.units_of(stage.as_deref())?, Some(x.as_str()));
+                let columns = series::Columns { names, over, units, references };
+                series::panels(scene, &table_of(folder, table)?, &columns).figure()
             }
             FigureSpec::Runout { table, stage, laws, references, .. } => {
                 let table = table_of(folder, table)?;
                 let drawn = column::Compared { column, laws, references };
-                column::runout(scene, &table, record(records, stage)?, drawn).figure()
-            }
-            FigureSpec::RadialProfile { fields, stage, times, laws, .. } => {
-                let record = record(records, stage)?;
-                let (times, column) = (times.as_slice(), (column, laws.as_slice()));
-                radial::profile(scene, folder, (fields, times), record, column)?.figure()
+                column::runout(scene, &table, self.record(stage)?, drawn).figure()
             }
             FigureSpec::Energies { table, stage, references, .. } => {
-                let units = units(scene, record(records, stage)?, column);
+                let units = units(scene, self.record(stage)?, column);
                 let chart = column::energies(scene, &table_of(folder, table)?, units);
                 with_references(chart, references).figure()
             }
-            FigureSpec::Flow { fields, color, stage, times, .. } => {
-                let units = units(scene, record(records, stage)?, column);
-                flow::grains(scene, folder, (fields.as_str(), color.as_str()), times, units)?.figure()
-            }
-            FigureSpec::Cells { fields, range, stage, times, .. } => {
-                let units = units(scene, record(records, stage)?, column);
-                let range = range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
-                voronoi::cells(scene, folder, (fields, range), times, units)?.figure()
-            }
-            FigureSpec::ForceChains { contacts, stage, time, .. } => {
-                let units = units(scene, record(records, stage)?, column);
-                flow::chains(scene, folder, contacts, *time, units)?.figure()
-            }
-            FigureSpec::Map { fields, color, diverging, range, stage, times, .. } => {
-                let range = range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
-                let spec = map::MapSpec { fields, color, diverging: *diverging, range, times };
-                map::map(scene, folder, record(records, stage)?, &spec)?.figure()
-            }
             FigureSpec::Profile { profile, column, stage, times, length, scale, references, .. } => {
                 let spec = fluid::ProfileFigure {
+                    profile,
                     column,
                     times,
                     length: length.map(|length| length.value()),
                     scale: *scale,
                     references,
                 };
-                fluid::profile(scene, &table_of(folder, profile)?, record(records, stage)?, &spec).figure()
+                let (chart, left_out) =
+                    fluid::profile(scene, &table_of(folder, profile)?, self.record(stage)?, &spec);
+                return Ok((chart.figure(), left_out));
             }
             FigureSpec::Impact { table, stage, transient, .. } => {
                 let table = table_of(folder, table)?;
-                impact::panels(scene, &table, record(records, stage)?, *transient)?.figure()
+                impact::panels(scene, &table, self.record(stage)?, *transient)?.figure()
             }
             FigureSpec::Spectrum { table, column, stage, reference, .. } => {
-                let record = record(records, stage)?;
+                let record = self.record(stage)?;
                 fluid::spectrum_chart(scene, &table_of(folder, table)?, (column, record), *reference)?
                     .figure()
             }
+            _ => return self.of_frames(spec),
         };
-        figure.save(&path)?;
-        paths.push(path);
+        Ok((figure, None))
     }
-    Ok(paths)
+
+    /// A figure of files of grains, contacts or cells at some times.
+    fn of_frames(&self, spec: &FigureSpec) -> Result<Made, Failure> {
+        let Self { scene, folder, records, column } = *self;
+        let walls = walls::Walls { scene, column, records };
+        let frames = |output: &str, times: &[f64], units| Frames::of(folder, output, times, units);
+        let of_stage = |stage: &str| Ok::<_, Failure>(units(scene, self.record(stage)?, column));
+        let pair =
+            |range: &Option<Vec<f64>>| range.as_deref().and_then(|range| <[f64; 2]>::try_from(range).ok());
+        match spec {
+            FigureSpec::RadialProfile { fields, stage, times, laws, .. } => {
+                let (record, units) = (self.record(stage)?, of_stage(stage)?);
+                let frames = frames(fields, times, units)?;
+                let chart = radial::profile(scene, &frames.files, record, (column, laws), units)?;
+                Ok((chart.figure(), frames.left_out))
+            }
+            FigureSpec::Flow { fields, color, stage, times, .. } => {
+                let units = of_stage(stage)?;
+                let frames = frames(fields, times, units)?;
+                Ok((flow::grains(&walls, &frames.files, color, units)?.figure(), frames.left_out))
+            }
+            FigureSpec::Cells { fields, range, stage, times, .. } => {
+                let units = of_stage(stage)?;
+                let frames = frames(fields, times, units)?;
+                Ok((voronoi::cells(&walls, &frames.files, pair(range), units)?.figure(), frames.left_out))
+            }
+            FigureSpec::ForceChains { contacts, stage, time, .. } => {
+                let units = of_stage(stage)?;
+                let frames = frames(contacts, &[*time], units)?;
+                Ok((flow::chains(&walls, &frames.files, units)?.figure(), frames.left_out))
+            }
+            FigureSpec::Map { fields, color, diverging, range, stage, times, .. } => {
+                let units = Units { start: self.record(stage)?.start, time: 1.0, scaled: false };
+                let frames = frames(fields, times, units)?;
+                let (range, diverging) = (pair(range), *diverging);
+                let spec = map::MapSpec { files: &frames.files, color, diverging, range };
+                Ok((map::map(scene, units, &spec)?.figure(), frames.left_out))
+            }
+            _ => self.of_table(spec),
+        }
+    }
+
+    fn record(&self, name: &str) -> Result<&StageRecord, Failure> {
+        let found = self.records.iter().find(|record| record.name == name);
+        let reason = || format!("stage `{name}` was not run yet, so there is no figure of it");
+        found.ok_or_else(|| Failure::Io(reason()))
+    }
+
+    fn units_of(&self, stage: Option<&str>) -> Result<Option<Units>, Failure> {
+        let record = stage.map(|stage| self.record(stage)).transpose()?;
+        Ok(record.map(|record| units(self.scene, record, self.column)))
+    }
 }
 
 /// A number that a run measured.
@@ -140,7 +245,7 @@ pub(crate) fn metrics(
             add(&shown.name, shown.unit, number);
         }
     }
-    if let (Some(column), Some(release)) = (column, release_of(scene, records)) {
+    if let (Some(column), Some(release)) = (column.filter(|_| spreads(scene)), release_of(scene, records)) {
         add("aspect_ratio", "1", Some(release.height / column.width));
         let front = number_of(simulation, column.front());
         add("runout", "1", front.map(|front| (front - column.width) / column.width));
@@ -186,24 +291,81 @@ fn gravity_time(scene: &Scene, height: f64) -> Option<f64> {
     (gravity > 0.0 && height > 0.0).then(|| (height / gravity).sqrt())
 }
 
+/// Whether the sample is a column that spreads: behind a gate, or with nothing at its right. In a silo lengths over the
+/// width of the column and times over sqrt(H/g) mean nothing.
+fn spreads(scene: &Scene) -> bool {
+    let is_asked =
+        |figure: &FigureSpec| matches!(figure, FigureSpec::Runout { .. } | FigureSpec::RadialProfile { .. });
+    let is_released = |stage: &Stage| {
+        stage.changes.iter().any(|change| matches!(change, Change::Open(name) if name == "right"))
+    };
+    let beside = |wall: &WallSpec| {
+        matches!(wall, WallSpec::Floor { .. } | WallSpec::Left { .. } | WallSpec::Sides { .. })
+    };
+    let is_gate = |wall: &WallSpec| matches!(wall, WallSpec::Gate { .. });
+    let comes_and_goes = !(scene.inlets.is_empty() && scene.outlets.is_empty() && scene.cell.is_none());
+    scene.figures.iter().any(is_asked)
+        || scene.walls.iter().any(is_gate)
+        || scene.stages.iter().any(is_released)
+        || (!comes_and_goes && scene.walls.iter().all(beside))
+}
+
+/// Share of the height of a column as it is built that it has at least when it is released.
+const SETTLED: f64 = 0.5;
+
+/// Times of figures that come after the longest that a run can last.
+pub(crate) fn times_beyond(scene: &Scene, column: Option<ColumnSize>) -> Vec<String> {
+    let mut found = Vec::new();
+    for (k, figure) in scene.figures.iter().enumerate() {
+        let stage = figure.needs("front").stage;
+        let first = scene.stages.iter().position(|other| stage == Some(other.name.as_str()));
+        let Some(first) = first else { continue };
+        let longest: f64 = scene.stages[first..].iter().map(|stage| stage.end.longest()).sum();
+        let of_column = column.filter(|_| figure.is_scaled() && spreads(scene));
+        let unit = of_column.and_then(|column| gravity_time(scene, SETTLED * column.height));
+        let (unit, units) = unit.map_or((1.0, "s"), |unit| (unit, "√(H₀/g)"));
+        let beyond = figure.times().iter().filter(|time| **time * unit > longest * (1.0 + 1e-9));
+        let beyond: Vec<String> = beyond.map(|time| format!("{time} {units}")).collect();
+        if !beyond.is_empty() {
+            found.push(format!(
+                "figures.{k} `{}`: the run ends before {}; from the start of `{}` on it lasts at most {longest} s",
+                figure.path(),
+                beyond.join(", "),
+                scene.stages[first].name,
+            ));
+        }
+    }
+    found
+}
+
 fn units(scene: &Scene, record: &StageRecord, column: Option<ColumnSize>) -> Units {
-    let time = column.and_then(|_| gravity_time(scene, record.height));
+    let time = column.filter(|_| spreads(scene)).and_then(|_| gravity_time(scene, record.height));
     Units { start: record.start, time: time.unwrap_or(1.0), scaled: time.is_some() }
 }
 
 impl Units {
     fn time_label(&self) -> &'static str {
-        if self.scaled { "time after release, t / √(H₀/g) [-]" } else { "time [s]" }
+        match (self.scaled, self.start > 0.0) {
+            (true, _) => "time after release, t / √(H₀/g) [-]",
+            (false, true) => "time since the stage began [s]",
+            (false, false) => "time [s]",
+        }
     }
 
+    /// How a time in these units is written.
     fn name_of(&self, time: f64) -> String {
         if self.scaled { format!("t = {time} √(H₀/g)") } else { format!("t = {time} s") }
     }
-}
 
-fn record<'a>(records: &'a [StageRecord], name: &str) -> Result<&'a StageRecord, Failure> {
-    let found = records.iter().find(|record| record.name == name);
-    found.ok_or_else(|| Failure::Io(format!("stage `{name}` was not run yet, so there is no figure of it")))
+    /// How a simulated time \[s\] is written.
+    fn label(&self, simulated: f64) -> String {
+        let since = simulated - self.start;
+        // Differences of round-off are none.
+        let since = if since.abs() <= 1e-12 * simulated.abs() { 0.0 } else { since / self.time };
+        let rounded = if self.scaled { (100.0 * since).round() / 100.0 } else { four_digits(since) };
+        // Zero has no sign.
+        self.name_of(rounded + 0.0)
+    }
 }
 
 fn table_of(folder: &RunFolder, name: &str) -> Result<Table, Failure> {
@@ -224,79 +386,50 @@ fn title(scene: &Scene, what: &str) -> String {
     if scene.title.is_empty() { what.to_owned() } else { format!("{}: {what}", scene.title) }
 }
 
-/// Columns of a table over time: all of it over seconds, or from a stage on in its units.
-fn series(scene: &Scene, table: &Table, columns: &[String], units: Option<Units>) -> Chart {
-    let unit = columns.first().and_then(|name| table.unit(name)).unwrap_or("-");
-    let label = match columns {
-        [one] => format!("{} [{unit}]", one.replace('_', " ")),
-        _ => format!("[{unit}]"),
-    };
-    let heading = if scene.title.is_empty() { "Series over time" } else { &scene.title };
-    let time_label = units.map_or("time [s]", |units| units.time_label());
-    let Units { start, time: scale, .. } =
-        units.unwrap_or(Units { start: f64::NEG_INFINITY, time: 1.0, scaled: false });
-    let mut chart = Chart::new(heading, Axis::linear(time_label), Axis::linear(label));
-    let time = table.column("time").unwrap_or_default();
-    let since = |t: f64| if start.is_finite() { (t - start) / scale } else { t };
-    for name in columns {
-        let values = table.column(name).unwrap_or_default();
-        let rows = time.iter().zip(values).filter(|(t, _)| **t >= start);
-        let points = rows.map(|(&t, value)| [since(t), value]).collect();
-        let label = if columns.len() > 1 { name.replace('_', " ") } else { String::new() };
-        chart = chart.with(Series::new(label, points, Style::Line));
-    }
-    chart
-}
-
-/// A chart with curves from elsewhere, beside which a curve without a label is this run.
-fn with_references(mut chart: Chart, references: &[ReferenceCurve]) -> Chart {
-    if !references.is_empty() {
-        let unnamed = chart.series.iter_mut().filter(|series| series.label.is_empty());
-        unnamed.for_each(|series| series.label = "this run".to_owned());
-    }
-    for reference in references {
-        let points = reference.points.iter().map(|(x, y)| [*x, *y]).collect();
-        let style = if reference.line { Style::Dashed } else { Style::Markers };
-        chart = chart.with(Series::new(reference.label.clone(), points, style));
-    }
-    chart
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene_file::SceneText;
 
-    fn table() -> Table {
-        let columns = ["time", "bulk_density"].map(|name| (name.to_owned(), "1".to_owned())).to_vec();
-        Table { columns, rows: vec![vec![0.0, 0.7], vec![1.0, 0.8], vec![2.0, 0.9]] }
-    }
-
-    fn scene() -> Scene {
-        let (name, text) = crate::TEMPLATES[2];
-        crate::scene_file::SceneText::new(name, text).parse().unwrap()
-    }
-
-    #[test]
-    fn a_series_from_a_stage_on_counts_in_its_unit() {
-        let names = ["bulk_density".to_owned()];
-        let all = series(&scene(), &table(), &names, None);
-        assert_eq!(all.series[0].points, [[0.0, 0.7], [1.0, 0.8], [2.0, 0.9]]);
-        let units = Units { start: 1.0, time: 0.5, scaled: true };
-        let part = series(&scene(), &table(), &names, Some(units));
-        assert_eq!(part.series[0].points, [[0.0, 0.8], [2.0, 0.9]]);
+    fn template(edits: &[&str]) -> Scene {
+        let (name, text) = crate::TEMPLATES.iter().find(|(name, _)| *name == "sample").unwrap();
+        let mut text = SceneText::new(*name, *text);
+        edits.iter().for_each(|edit| text.set(edit).unwrap());
+        text.parse().unwrap()
     }
 
     #[test]
-    fn curves_from_elsewhere_lie_beside_this_run() {
-        let bare = series(&scene(), &table(), &["bulk_density".to_owned()], None);
-        assert_eq!(with_references(bare.clone(), &[]), bare);
-        let reference = ReferenceCurve { label: "thesis".to_owned(), points: vec![(0.0, 0.75)], line: true };
-        let beside = with_references(bare, &[reference]);
-        let labels: Vec<&str> = beside.series.iter().map(|series| series.label.as_str()).collect();
-        assert_eq!(labels, ["this run", "thesis"]);
+    fn a_column_that_is_held_in_a_silo_has_seconds_and_one_that_spreads_its_own_time() {
+        let silo = template(&[]);
+        assert!(silo.walls.iter().any(|wall| matches!(wall, WallSpec::Right { .. })));
+        let record: StageRecord = serde_json::from_value(
+            json!({ "name": "settle", "start": 0.5, "dt": 1e-5, "front": 0.05, "height": 0.0981 }),
+        )
+        .unwrap();
+        let column = Some(ColumnSize { width: 0.05, height: 0.1, depth: None, round: None });
+        let found = units(&silo, &record, column);
         assert_eq!(
-            (&beside.series[1].points[..], &beside.series[1].style),
-            (&[[0.0, 0.75]][..], &Style::Dashed)
+            (found.scaled, found.time, found.time_label()),
+            (false, 1.0, "time since the stage began [s]")
+        );
+        let spread = template(&["walls=[Floor(material: \"wall\"), Left(material: \"wall\")]"]);
+        assert!(spreads(&spread));
+        let gate = "walls=[Right(material: \"wall\"), Gate(material: \"wall\", opens: \"settle\")]";
+        let found = units(&template(&[gate]), &record, column);
+        assert!(found.scaled && (found.time - 0.1).abs() < 1e-12, "{found:?}");
+        // Without a column there is no such time.
+        assert!(!units(&spread, &record, None).scaled);
+    }
+
+    #[test]
+    fn times_are_written_with_the_digits_that_they_have() {
+        let seconds = Units { start: 0.3, time: 1.0, scaled: false };
+        assert_eq!(seconds.label(0.1 + 0.2), "t = 0 s");
+        assert_eq!(seconds.label(0.304), "t = 0.004 s");
+        let scaled = Units { start: 0.3, time: 0.1, scaled: true };
+        assert_eq!(
+            (scaled.label(0.2999), scaled.label(0.27)),
+            ("t = 0 √(H₀/g)".to_owned(), "t = -0.3 √(H₀/g)".to_owned())
         );
     }
 }

@@ -125,6 +125,13 @@ impl Observer for TableObserver {
     }
 }
 
+/// The list of frames of this name, which may hold a dot.
+fn list_of(stem: &Path) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(".pvd");
+    PathBuf::from(name)
+}
+
 /// One file per look, listed in a `.pvd`.
 struct FilesObserver {
     stem: PathBuf,
@@ -142,7 +149,7 @@ impl FilesObserver {
         links: bool,
         fresh: bool,
     ) -> Result<Self, Failure> {
-        let collection = if fresh { Some(Collection::create(&stem.with_extension("pvd"))?) } else { None };
+        let collection = if fresh { Some(Collection::create(&list_of(&stem))?) } else { None };
         Ok(Self { stem, source, names: names.to_vec(), links, collection })
     }
 }
@@ -173,7 +180,7 @@ impl Observer for FilesObserver {
 
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
         let files: u64 = from.one("files")?;
-        self.collection = Some(Collection::reopen_at(&self.stem.with_extension("pvd"), files as usize)?);
+        self.collection = Some(Collection::reopen_at(&list_of(&self.stem), files as usize)?);
         Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::check;
 use crate::failure::Failure;
+use crate::figures::Drawn;
 use crate::folder::{PROGRAM, RunFolder, provenance};
 use crate::model::{self, Model, PushRecord, Whereabouts};
 use crate::observers::{self, END_OF_STAGE, Gone, Packed, Rest, SnapshotTimer, Steady};
@@ -13,7 +14,7 @@ use granular_core::{Ending, Scheduled, Section, Simulation};
 use granular_io::{SnapshotStore, hash_hex, state_hash};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -103,6 +104,8 @@ struct Session<'a> {
     /// Where walls and grains were at the start, and why the run ended when all grains had left.
     region: Option<Whereabouts>,
     gone: Arc<OnceLock<String>>,
+    /// What came of the figures, once the stages are over.
+    figures: Drawn,
     /// State of the observer that ends a stage, when a resumed run was within a stage that waits for it.
     watcher: Option<Section>,
 }
@@ -165,17 +168,17 @@ pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, F
     session.finish_run(stage, true)
 }
 
-/// Draws the figures of a run again. Returns their paths without ending.
+/// Draws the figures of a run again.
 ///
 /// # Errors
-/// When the folder is none of a run, or a figure cannot be drawn.
-pub fn plot(out: &Path) -> Result<Vec<PathBuf>, Failure> {
+/// When the folder is none of a run. Figures that cannot be drawn are in the result.
+pub fn plot(out: &Path) -> Result<Drawn, Failure> {
     let folder = RunFolder::open(out)?;
     let text = SceneText::read(folder.scene_path())?;
     let (scene, model) = check::read(&text)?;
     let records: Vec<StageRecord> = serde_json::from_value(folder.facts()?["stages"].clone())
         .map_err(|error| Failure::io(out.display(), format!("run.json has no stages: {error}")))?;
-    crate::figures::draw(&scene, &folder, &records, model.column)
+    Ok(crate::figures::draw(&scene, &folder, &records, model.column))
 }
 
 impl<'a> Session<'a> {
@@ -199,6 +202,7 @@ impl<'a> Session<'a> {
             first_step: 0,
             region: Whereabouts::of(model.simulation.solver()),
             gone: Arc::default(),
+            figures: Drawn::default(),
             watcher: None,
             begun: Instant::now(),
             records: Vec::new(),
@@ -250,7 +254,10 @@ impl<'a> Session<'a> {
         }
         self.save(self.scene.stages.len())?;
         self.stepping = None;
-        crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
+        // The run is done also without its figures, which `granular plot` can draw again.
+        self.figures = crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column);
+        let told = self.figures.failed.iter().chain(self.figures.left_out.iter().filter(|_| !self.quiet));
+        told.for_each(|warning| progress::say(format_args!("warning: {warning}")));
         Ok(())
     }
 
@@ -486,11 +493,13 @@ impl Session<'_> {
             "simulated_seconds": clock.time(),
             "steps": clock.step(),
             "wall_seconds": wall,
+            "item": simulation.solver().size().1,
             "rate": steps as f64 * simulation.solver().size().0 as f64 / wall,
             "state_hash": hash_hex(state_hash(&simulation.save())),
             "metrics": Value::Object(values.collect()),
             "units": Value::Object(units.collect()),
             "stages": self.records,
+            "figures": self.figures.to_json(),
             "built": provenance(),
             "checksums": checksums.unwrap_or(Value::Null),
         });

@@ -1,8 +1,9 @@
 //! Figures as SVG and PNG that need no font, library or program on the machine.
 //!
 //! A [`Chart`] holds series on two axes, [`Panels`] several charts, a [`GrainFigure`] snapshots of
-//! disks with a colour bar, a [`MapFigure`] values in the cells of grids. Each becomes a [`Figure`], which is saved as `.svg` (text as
-//! outlines, so it looks the same everywhere) and `.png` at twice the size in pixels.
+//! disks with a colour bar, a [`MapFigure`] values in the cells of grids. Each becomes a [`Figure`], which is saved as `.svg` (text stays
+//! text, which can be searched and edited, fitted to the width that it has in the bundled font) and `.png` at twice the size
+//! in pixels.
 //!
 //! Points that are not finite, or not positive on a logarithmic axis, are left out and break a
 //! line; no data makes a figure fail. In labels, superscripts and subscripts in Unicode (`10⁻⁶`,
@@ -28,7 +29,7 @@ mod scale;
 mod svg;
 
 pub use chart::{Axis, Chart, Scale, Series, Style};
-pub use grains::{Chain, Grain, GrainFigure, GrainPanel, Patch};
+pub use grains::{Chain, Grain, GrainFigure, GrainPanel, Mark, Patch};
 pub use map::{MapFigure, MapPanel};
 pub use panels::Panels;
 

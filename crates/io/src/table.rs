@@ -158,14 +158,19 @@ impl Drop for TableWriter {
     }
 }
 
+/// Whether a table can have a column of this name.
+pub fn can_be_a_column(name: &str) -> bool {
+    let bad = name.contains([',', '"', '[', ']', '\n', '\r']) || name.trim() != name;
+    !(bad || name.is_empty() || name.starts_with('#'))
+}
+
 fn header_line(columns: &[(&str, &str)]) -> Result<String, String> {
     if columns.is_empty() {
         return Err("a table needs a column".to_owned());
     }
     let mut line = String::new();
     for (i, (name, unit)) in columns.iter().enumerate() {
-        let bad = |text: &str| text.contains([',', '"', '[', ']', '\n', '\r']) || text.trim() != text;
-        if name.is_empty() || name.starts_with('#') || bad(name) || bad(unit) {
+        if !can_be_a_column(name) || !(unit.is_empty() || can_be_a_column(unit)) {
             return Err(format!("`{name} [{unit}]` cannot be the head of a column"));
         }
         if columns[..i].iter().any(|(taken, _)| taken == name) {

@@ -280,11 +280,17 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let (excess, momentum) = self.moments(place);
         let resting = deviation(place) / L::WEIGHTS[0];
         if excess.is_finite() && resting.is_finite() && momentum.iter().all(|c| c.is_finite()) {
-            let by_density = found.is_some();
+            // Half of the density at rest is as wrong as half more: what is judged is the distance from 1.
+            let (off, allowed) =
+                if found.is_some() { (excess, 0.5) } else { (resting, BEYOND / L::WEIGHTS[0]) };
             return StepError::TooStiff {
-                what: format!("density over that at rest in cell {cell:?} after step {}", self.steps),
-                value: 1.0 + if by_density { excess } else { resting },
-                allowed: 1.0 + if by_density { 0.5 } else { BEYOND / L::WEIGHTS[0] },
+                what: format!(
+                    "density over that at rest in cell {cell:?} after step {} is {:.4}; its distance from 1",
+                    self.steps,
+                    1.0 + off
+                ),
+                value: off.abs(),
+                allowed,
                 hint: "the flow is too fast or too little viscous for its cells: take a smaller step (Mach number) \
                        or smaller cells (grid Reynolds number), or the operator Regularised"
                     .to_owned(),

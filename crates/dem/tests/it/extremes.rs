@@ -187,6 +187,38 @@ fn a_shot_ends_or_says_why() {
     assert!((dem.grain(0).position.x - 100.0).abs() < 1e-9);
 }
 
+#[test]
+fn advice_is_a_stiffness_that_is_enough_and_names_the_two_that_overlap() {
+    let bound = |name: &str, stiffness: f64, options: Options, speed: f64, gap: f64| {
+        let mut materials = Materials::new();
+        let glass = Material { normal_stiffness: stiffness, ..Material::default() };
+        let glass = materials.add(glass).unwrap();
+        let grain = |x: f64| Grain::at(<D2 as Dim>::Vec::new(x, 0.0), 1e-3, glass);
+        let grains =
+            vec![grain(0.5), grain(0.0).moving(<D2 as Dim>::Vec::new(speed, 0.0)), grain(2e-3 + gap)];
+        let mut limits = Limits::default();
+        free::<D2>(materials, grains, options).limits(&mut limits);
+        limits.bounds.into_iter().find(|bound| bound.name == name).unwrap()
+    };
+    let hardest =
+        |stiffness| bound("overlap of the hardest impact", stiffness, Options::default(), 20.0, 1e-3);
+    let soft = hardest(1e4);
+    assert!(!soft.holds());
+    let (_, advice) = soft.why.split_once(", to ").expect("a target");
+    let target: f64 = advice.split(' ').next().unwrap().parse().unwrap();
+    let enough = hardest(target);
+    assert!(enough.holds() && !hardest(0.8 * target).holds(), "{}", soft.why);
+    // What holds needs no advice.
+    assert!(!enough.why.contains("raise"), "{}", enough.why);
+    let overlap = bound("overlap at the start", 1e6, Options::default(), 0.0, -2e-4);
+    assert!(!overlap.holds());
+    for part in
+        ["grain 1 at (0.000000, 0.000000) m", "grain 2 at (0.001800, 0.000000) m", "overlap by 2.000e-4 m"]
+    {
+        assert!(overlap.why.contains(part), "{part}: {}", overlap.why);
+    }
+}
+
 const D3_X: granular_core::glam::DVec3 = granular_core::glam::DVec3::X;
 
 #[test]

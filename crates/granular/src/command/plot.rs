@@ -39,12 +39,18 @@ impl Plot {
         let Self { folders, x, y, by, log, fits, references } = self;
         let view = sweep::View { x, y, by, log, fits, references };
         let runs: Vec<&PathBuf> = folders.iter().filter(|folder| !sweep::is_sweep(folder)).collect();
+        let mut failed = Vec::new();
         let paths = match runs.first() {
             None => vec![sweep::plot(&folders, &view)?],
             Some(file) if folders.len() == 1 && view == sweep::View::default() && file.is_file() => {
                 vec![calibrate::plot(file)?]
             }
-            Some(run) if folders.len() == 1 && view == sweep::View::default() => run::plot(run)?,
+            Some(run) if folders.len() == 1 && view == sweep::View::default() => {
+                let drawn = run::plot(run)?;
+                drawn.left_out.iter().for_each(|said| eprintln!("warning: {said}"));
+                failed = drawn.failed;
+                drawn.paths
+            }
             Some(run) => {
                 let reason = "holds no sweep (no sweep.json); several folders, --x, --y, --by, --log, --fit and \
                               --reference are for sweeps";
@@ -52,10 +58,14 @@ impl Plot {
             }
         };
         let lines: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-        show(common, &json!(lines), || {
-            lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
-        });
-        Ok(())
+        // One JSON value: the failure, if there is one.
+        if failed.is_empty() || !common.json {
+            show(common, &json!(lines), || {
+                lines.iter().map(|path| format!("{path}.svg, {path}.png\n")).collect()
+            });
+        }
+        // Those that can be drawn are drawn.
+        if failed.is_empty() { Ok(()) } else { Err(Failure::Io(failed.join("\nerror: "))) }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Profiles and spectra of a fluid, from the files of a run.
 
+use super::frames::{choose, left_out};
 use super::spectrum::{Spectrum, spectrum};
-use super::{Metric, four_digits, table_of, title, with_references};
+use super::{Metric, Units, table_of, title, with_references};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::run::StageRecord;
@@ -15,6 +16,8 @@ const DRAWN: usize = 2000;
 
 /// What a figure of profiles shows.
 pub(super) struct ProfileFigure<'a> {
+    /// Path of the output.
+    pub(super) profile: &'a str,
     pub(super) column: &'a str,
     pub(super) times: &'a [f64],
     /// What distances \[m\] and values are divided by.
@@ -24,7 +27,12 @@ pub(super) struct ProfileFigure<'a> {
 }
 
 /// A column over the distance along its line at several times, with curves from elsewhere.
-pub(super) fn profile(scene: &Scene, table: &Table, record: &StageRecord, spec: &ProfileFigure<'_>) -> Chart {
+pub(super) fn profile(
+    scene: &Scene,
+    table: &Table,
+    record: &StageRecord,
+    spec: &ProfileFigure<'_>,
+) -> (Chart, Option<String>) {
     let unit = table.unit(spec.column).unwrap_or("-");
     let name = spec.column.replace('_', " ");
     let (x, y) = match (spec.length, spec.scale) {
@@ -40,17 +48,19 @@ pub(super) fn profile(scene: &Scene, table: &Table, record: &StageRecord, spec: 
     let column = |name| table.column(name).unwrap_or_default();
     let (time, distance, values) = (column("time"), column("distance"), column(spec.column));
     let (length, scale) = (spec.length.unwrap_or(1.0), spec.scale.unwrap_or(1.0));
-    for wanted in spec.times {
-        let wanted = record.start + wanted;
-        let nearest = time.iter().copied().min_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs()));
-        let Some(nearest) = nearest else { continue };
-        let at_time = (0..time.len()).filter(|row| time[*row] == nearest);
+    let units = Units { start: record.start, time: 1.0, scaled: false };
+    let mut available = time.clone();
+    available.dedup();
+    let choices = choose(&available, spec.times, units);
+    for number in choices.iter().filter_map(|choice| choice.frame()) {
+        let shown = available[number];
+        let at_time = (0..time.len()).filter(|row| time[*row] == shown);
         let points: Vec<[f64; 2]> =
             at_time.map(|row| [distance[row] / length, values[row] / scale]).collect();
-        let label = format!("t = {} s", four_digits(nearest - record.start));
-        chart = chart.with(Series::new(label, points, Style::Line));
+        chart = chart.with(Series::new(units.label(shown), points, Style::Line));
     }
-    with_references(chart, spec.references)
+    let left_out = left_out(&choices, (&available, spec.profile), spec.times, units);
+    (with_references(chart, spec.references), left_out)
 }
 
 /// The spectrum of a column from the start of a stage on.

@@ -1,16 +1,14 @@
 //! Colour maps of a fluid, from the files of a run.
 
-use super::flow::nearest_file;
-use super::{four_digits, title};
+use super::{Units, title};
 use crate::failure::Failure;
-use crate::folder::RunFolder;
-use crate::run::StageRecord;
 use crate::scene::fluid::{ObstacleSpec, ShapeSpec};
 use crate::scene::{Dimension, Scene};
 use granular_core::units::Length;
 use granular_io::figure::{MapFigure, MapPanel};
 use granular_io::vtk::{GridFields, read_vti};
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 
 /// Corners of the outline of a disk.
 const ROUND: usize = 72;
@@ -20,26 +18,19 @@ const FLAT: f64 = 3.0;
 
 /// What a map shows.
 pub(super) struct MapSpec<'a> {
-    pub(super) fields: &'a str,
+    pub(super) files: &'a [PathBuf],
     pub(super) color: &'a str,
     pub(super) diverging: bool,
     pub(super) range: Option<[f64; 2]>,
-    pub(super) times: &'a [f64],
 }
 
 /// A field at several times, in the unit of length that suits the size of the fluid.
-pub(super) fn map(
-    scene: &Scene,
-    folder: &RunFolder,
-    record: &StageRecord,
-    spec: &MapSpec<'_>,
-) -> Result<MapFigure, Failure> {
+pub(super) fn map(scene: &Scene, units: Units, spec: &MapSpec<'_>) -> Result<MapFigure, Failure> {
     let mut panels = Vec::new();
     let mut grid = GridFields::default();
-    for time in spec.times {
-        let file = nearest_file(folder, spec.fields, record.start + time)?;
-        grid = read_vti(&file)?;
-        panels.push(panel(scene, &grid, record, spec));
+    for file in spec.files {
+        grid = read_vti(file)?;
+        panels.push(panel(scene, &grid, units, spec));
     }
     let scale = if grid.spacing[0] * grid.cells[0] as f64 > 1.0 { 1.0 } else { 1e3 };
     let unit = if scale > 1.0 { "mm" } else { "m" };
@@ -57,7 +48,7 @@ pub(super) fn map(
     figure.axes = [format!("x [{unit}]"), format!("{} [{unit}]", ["x", "y", "z"][upward])];
     figure.diverging = spec.diverging;
     let [[left, below], [right, above]] = corners;
-    figure.columns = if spec.times.len() > 1 && right - left < FLAT * (above - below) { 2 } else { 1 };
+    figure.columns = if spec.files.len() > 1 && right - left < FLAT * (above - below) { 2 } else { 1 };
     figure.values = spec.range.or_else(|| from_zero(&figure));
     Ok(figure)
 }
@@ -70,7 +61,7 @@ fn from_zero(figure: &MapFigure) -> Option<[f64; 2]> {
 }
 
 /// The axis drawn upwards.
-fn upward(scene: &Scene) -> usize {
+pub(super) fn upward(scene: &Scene) -> usize {
     match scene.dimension {
         Dimension::Plane => 1,
         Dimension::Space => 2,
@@ -90,7 +81,7 @@ fn quantity(grid: &GridFields, color: &str) -> String {
 }
 
 /// One time: the plane of the fluid, or its middle layer along y in space.
-fn panel(scene: &Scene, grid: &GridFields, record: &StageRecord, spec: &MapSpec<'_>) -> MapPanel {
+fn panel(scene: &Scene, grid: &GridFields, units: Units, spec: &MapSpec<'_>) -> MapPanel {
     let values = grid.magnitude(spec.color).unwrap_or_default();
     let solid = grid.magnitude("solid").unwrap_or_default();
     // Covered cells have no flow.
@@ -102,7 +93,7 @@ fn panel(scene: &Scene, grid: &GridFields, record: &StageRecord, spec: &MapSpec<
         Dimension::Space => (1, grid.cells[1] / 2),
     };
     let (values, cells) = grid.plane(&values, normal, index).unwrap_or_default();
-    let label = format!("t = {} s", four_digits(grid.time - record.start));
+    let label = units.label(grid.time);
     let obstacles = scene.fluid.iter().flat_map(|fluid| &fluid.obstacles);
     // Those that move show by their cells.
     let outlines = obstacles.filter(|obstacle| obstacle.path.is_none()).map(|body| outline(scene, body));
@@ -110,7 +101,7 @@ fn panel(scene: &Scene, grid: &GridFields, record: &StageRecord, spec: &MapSpec<
 }
 
 /// The outline of an obstacle in the plane that is drawn \[m\].
-fn outline(scene: &Scene, obstacle: &ObstacleSpec) -> Vec<[f64; 2]> {
+pub(super) fn outline(scene: &Scene, obstacle: &ObstacleSpec) -> Vec<[f64; 2]> {
     let upward = upward(scene);
     let of = |values: &[Length]| [0, upward].map(|axis| values.get(axis).map_or(0.0, |x| x.value()));
     match &obstacle.shape {

@@ -1,16 +1,15 @@
 //! Profiles of a collapsing cylinder over the distance from its axis.
 
-use super::flow::nearest_frame;
-use super::title;
+use super::{Units, title};
 use crate::failure::Failure;
-use crate::folder::RunFolder;
 use crate::model::ColumnSize;
 use crate::run::StageRecord;
 use crate::scene::Scene;
 use crate::scene::outputs::LawSpec;
 use core::f64::consts::TAU;
 use granular_io::figure::{Axis, Chart, Series, Style};
-use granular_io::vtk::Points;
+use granular_io::vtk::{Points, read_vtp};
+use std::path::PathBuf;
 
 /// Sectors about the axis.
 const SECTORS: usize = 12;
@@ -18,21 +17,19 @@ const SECTORS: usize = 12;
 /// The surface at several times, with the edges and heights of laws.
 pub(super) fn profile(
     scene: &Scene,
-    folder: &RunFolder,
-    (fields, times): (&str, &[f64]),
+    files: &[PathBuf],
     release: &StageRecord,
     (column, laws): (Option<ColumnSize>, &[LawSpec]),
+    units: Units,
 ) -> Result<Chart, Failure> {
-    let units = super::units(scene, release, column);
     let unit = column.map_or(release.front, |column| column.width);
     let axes = [Axis::linear("distance from the axis, r / r₀ [-]"), Axis::linear("height, h / r₀ [-]")];
     let [x, y] = axes;
     let mut chart = Chart::new(title(scene, "profiles"), x, y);
-    for &time in times {
-        let frame = nearest_frame(folder, fields, units.start + time * units.time)?;
+    for file in files {
+        let frame = read_vtp(file)?;
         let points = surface(&frame).into_iter().map(|[r, h]| [r / unit, h / unit]).collect();
-        let shown = (100.0 * (frame.time - units.start) / units.time).round() / 100.0;
-        chart = chart.with(Series::new(units.name_of(shown), points, Style::Line));
+        chart = chart.with(Series::new(units.label(frame.time), points, Style::Line));
     }
     let aspect = release.height / unit;
     for law in laws {

@@ -1,38 +1,38 @@
 //! Voronoi cells over the grains, from the files of a run.
 
-use super::flow::{add_walls, axes, in_plane, nearest_frame};
+use super::flow::{axes, in_plane};
+use super::walls::Walls;
 use super::{Units, title};
 use crate::failure::Failure;
-use crate::folder::RunFolder;
 use crate::scene::{Scene, WallSpec};
 use granular_core::glam::DVec2;
 use granular_io::figure::{Grain, GrainFigure, GrainPanel, Patch};
-use granular_io::vtk::Points;
+use granular_io::vtk::{Points, read_vtp};
 use granular_tessellate::{Diagram, Domain};
+use std::path::PathBuf;
 
 /// Straight parts by which a curved side is drawn.
 const CHORDS: u32 = 4;
 
 /// The cells at several times, grey by the packing density of the grain.
 pub(super) fn cells(
-    scene: &Scene,
-    folder: &RunFolder,
-    (output, range): (&str, Option<[f64; 2]>),
-    times: &[f64],
+    walls: &Walls<'_>,
+    files: &[PathBuf],
+    range: Option<[f64; 2]>,
     units: Units,
 ) -> Result<GrainFigure, Failure> {
-    let mut panels = Vec::new();
-    for &time in times {
-        let frame = nearest_frame(folder, output, units.start + time * units.time)?;
-        let mut panel = panel(scene, &frame)?;
-        let shown = (frame.time - units.start) / units.time;
-        panel.label = units.name_of((shown * 100.0).round() / 100.0);
+    let (mut panels, mut times) = (Vec::new(), Vec::new());
+    for file in files {
+        let frame = read_vtp(file)?;
+        let mut panel = panel(walls.scene, &frame)?;
+        panel.label = units.label(frame.time);
+        times.push(frame.time);
         panels.push(panel);
     }
-    add_walls(scene, &mut panels);
-    let mut figure = GrainFigure::new(title(scene, "Voronoi cells"), "packing density [-]", panels);
+    walls.add(&mut panels, &times);
+    let mut figure = GrainFigure::new(title(walls.scene, "Voronoi cells"), "packing density [-]", panels);
     figure.values = range;
-    figure.axes = axes(scene);
+    figure.axes = axes(walls.scene);
     Ok(figure)
 }
 

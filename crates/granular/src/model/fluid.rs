@@ -104,6 +104,15 @@ fn simulation<L: Lattice<Q>, T: Real, const Q: usize>(
             return Err(refuse(&format!("fluid.obstacles.{k}.shape"), value, allowed));
         }
     }
+    // A moving obstacle may leave a gauge free later.
+    for gauge in lbm.setup().gauges.iter().filter(|_| fluid.bodies.is_empty()) {
+        if lbm.flow_at(gauge.place).is_none() {
+            let place = format!("fluid.gauges.{}", super::grains::quoted(&gauge.name));
+            let value = format!("`{}`, which has too few cells of the fluid around it", gauge.name);
+            let allowed = "a place in the fluid, outside of obstacles".to_owned();
+            return Err(refuse(&place, value, allowed));
+        }
+    }
     let start = fluid.start;
     lbm.set_flow(move |point| granular_lbm::Flow { pressure: 0.0, velocity: start(point) });
     let mut simulation = Simulation::named(name, Box::new(lbm));

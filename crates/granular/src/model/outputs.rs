@@ -1,14 +1,16 @@
 //! Whether outputs and figures ask only for what there is, and write only where they may.
 
+mod files;
+
 use super::{Problems, nearest};
-use crate::folder::RESERVED;
 use crate::machine::room_for;
 use crate::observers::{Grid, Line};
 use crate::probes;
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Scene, Writer};
 use crate::voronoi;
+use files::{Files, Taken, check_path, spelled};
 use granular_core::{Location, Shown, ShownAs, Solver};
-use std::path::{Component, Path};
+use granular_io::can_be_a_column;
 
 /// Memory that a point of a line takes, with the cells around it \[bytes\].
 const BYTES_PER_POINT: f64 = 400.0;
@@ -17,7 +19,8 @@ const BYTES_PER_AVERAGE: f64 = 1000.0;
 
 /// Checks of schedules and files.
 pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
-    let mut taken: Vec<Vec<String>> = Vec::new();
+    let mut taken = Taken::default();
+    let mut names: Vec<String> = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
         let (positive, shown) = match output.every {
             EverySpec::Time(time) => (time.value() > 0.0, time.to_string()),
@@ -44,16 +47,24 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         let place = format!("outputs.{k}.write.path");
         let path = output.write.path();
         if check_path(&place, path, problems) {
+            let path = spelled(path);
+            // Outputs are known by their paths, also those that write several files.
+            if names.contains(&path) {
+                problems.add(place, format!("`{}` again", output.write.path()), "a path of its own", "");
+                continue;
+            }
             let files = match output.write {
                 Writer::Table { .. } | Writer::Profile { .. } | Writer::Tracks { .. } => {
-                    vec![path.to_owned()]
+                    vec![Files::One(path.clone())]
                 }
                 Writer::Fields { .. } | Writer::Contacts { .. } => {
-                    vec![path.to_owned(), format!("{path}.pvd")]
+                    let frames = [".vtp", ".vti"].map(|ending| Files::Frames(path.clone(), ending));
+                    [vec![Files::One(format!("{path}.pvd"))], frames.to_vec()].concat()
                 }
-                Writer::Hdf5 { .. } => vec![path.to_owned(), format!("{path}.vtkhdf")],
+                Writer::Hdf5 { .. } => vec![Files::One(format!("{path}.vtkhdf"))],
             };
-            claim(&place, path, files, &mut taken, problems);
+            names.push(path);
+            taken.claim(&place, output.write.path(), files, problems);
         }
     }
     for (k, stage) in scene.stages.iter().enumerate() {
@@ -62,18 +73,21 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
         if scene.fluid.is_some() {
             problems.add(place, format!("`{path}`"), "nothing: only grains are saved as a sample", "");
         } else if check_path(&place, path, problems) {
-            claim(&place, path, vec![path.clone()], &mut taken, problems);
+            taken.claim(&place, path, vec![Files::One(spelled(path))], problems);
+            check_materials(scene, problems);
         }
     }
     for (k, figure) in scene.figures.iter().enumerate() {
         let place = format!("figures.{k}.path");
         let path = figure.path();
         if check_path(&place, path, problems) {
-            let files = vec![format!("{path}.svg"), format!("{path}.png")];
-            claim(&place, path, files, &mut taken, problems);
+            let files = ["svg", "png"].map(|ending| Files::One(format!("{}.{ending}", spelled(path))));
+            taken.claim(&place, path, files.to_vec(), problems);
         }
         let (key, empty) = match figure {
-            FigureSpec::Series { columns, .. } => ("columns", columns.is_empty()),
+            FigureSpec::Series { columns, .. } | FigureSpec::Curve { columns, .. } => {
+                ("columns", columns.is_empty())
+            }
             FigureSpec::Flow { times, .. }
             | FigureSpec::RadialProfile { times, .. }
             | FigureSpec::Cells { times, .. }
@@ -94,30 +108,18 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
     }
 }
 
-/// Whether a path may be written to.
-fn check_path(place: &str, path: &str, problems: &mut Problems) -> bool {
-    let mut parts = Path::new(path).components();
-    let inside = !path.is_empty() && parts.all(|part| matches!(part, Component::Normal(_)));
-    if !inside || path.ends_with('/') || path.contains(char::is_control) {
-        let allowed = "a relative path inside the run folder, such as `series.csv` or `frames/grains`";
-        problems.add(place, format!("`{path}`"), allowed, "");
-        return false;
+/// Refuses names of materials that the file of a saved sample cannot hold.
+fn check_materials(scene: &Scene, problems: &mut Problems) {
+    for name in scene.materials.keys().filter(|name| name.contains([',', '\n', '\r'])) {
+        let place = format!("materials.{}", super::grains::quoted(name));
+        let hint = "a stage saves the grains with the names of their materials, one line a grain";
+        problems.add(
+            place,
+            format!("a material called `{name}`"),
+            "a name without comma and line break",
+            hint,
+        );
     }
-    let first = path.split('/').next().unwrap_or_default();
-    if RESERVED.contains(&first) {
-        let value = format!("`{path}`, which the run itself writes");
-        problems.add(place, value, format!("any name but {}", RESERVED.join(", ")), "");
-        return false;
-    }
-    true
-}
-
-/// Refuses files that an output or figure before writes too.
-fn claim(place: &str, path: &str, files: Vec<String>, taken: &mut Vec<Vec<String>>, problems: &mut Problems) {
-    if taken.iter().flatten().any(|other| files.contains(other)) {
-        problems.add(place, format!("`{path}` again"), "a file of its own", "");
-    }
-    taken.push(files);
 }
 
 /// What outputs can show of a solver at its own places.
@@ -153,6 +155,13 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static st
                 let hint = nearest(name, known.iter().copied());
                 problems.add(path, format!("`{name}`, which nothing shows"), known.join(", "), hint);
                 unknown.push(output.write.path());
+            } else if matches!(output.write, Writer::Tracks { .. }) && name == "id" {
+                let allowed = "each name once: Tracks writes time, id and place in any case";
+                problems.add(path, "`id` again", allowed, "");
+            } else if kind == ShownAs::Number && !can_be_a_column(name) {
+                let allowed = "a name without comma, quote, bracket and line break, and no blank at its ends";
+                let hint = "rename the wall, obstacle or gauge";
+                problems.add(path, format!("`{name}`, which no table can hold"), allowed, hint);
             } else if names[..n].contains(name) {
                 problems.add(path, format!("`{name}` again"), "each name once", "");
             }

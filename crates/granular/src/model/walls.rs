@@ -265,7 +265,8 @@ impl WallSpec {
         }
     }
 
-    fn moves(&self) -> Option<&MotionSpec> {
+    /// How the wall moves.
+    pub(crate) fn moves(&self) -> Option<&MotionSpec> {
         match self {
             Self::Plane { moves, .. }
             | Self::Segment { moves, .. }
@@ -279,12 +280,31 @@ impl WallSpec {
         }
     }
 
+    /// The name by which changes open and close the wall; empty for walls that are several.
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::Floor { .. } => "floor",
+            Self::Left { .. } => "left",
+            Self::Right { .. } => "right",
+            Self::Gate { .. } => "gate",
+            Self::Plane { name, .. }
+            | Self::Segment { name, .. }
+            | Self::Block { name, .. }
+            | Self::Tube { name, .. }
+            | Self::Circle { name, .. }
+            | Self::Chain { name, .. }
+            | Self::Mesh { name, .. }
+            | Self::HeldGrains { name, .. } => name,
+            Self::Sides { .. } | Self::Box { .. } => "",
+        }
+    }
+
     fn needs_column(&self) -> bool {
         matches!(self, Self::Right { .. } | Self::Gate { .. } | Self::Sides { .. })
     }
 
     /// The stage at whose start the wall opens.
-    fn opens(&self) -> Option<&str> {
+    pub(crate) fn opens(&self) -> Option<&str> {
         match self {
             Self::Gate { opens, .. } => Some(opens),
             Self::Plane { opens, .. }

@@ -49,7 +49,10 @@ impl Hdf5Observer {
             Location::Grid { origin, spacing, cells } => Some(Location::Grid { origin, spacing, cells }),
             Location::Points(_) => None,
         };
-        let path = stem.with_extension("vtkhdf");
+        // The name may hold a dot.
+        let mut path = stem.as_os_str().to_owned();
+        path.push(".vtkhdf");
+        let path = PathBuf::from(path);
         let file = match &grid {
             _ if !fresh => None,
             Some(grid) => Some(File::Grid(VtkHdfGrid::create(&path, grid)?)),

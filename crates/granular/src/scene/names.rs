@@ -76,6 +76,7 @@ impl FigureSpec {
     pub fn path(&self) -> &str {
         match self {
             Self::Series { path, .. }
+            | Self::Curve { path, .. }
             | Self::Runout { path, .. }
             | Self::RadialProfile { path, .. }
             | Self::Energies { path, .. }
@@ -89,11 +90,35 @@ impl FigureSpec {
         }
     }
 
+    /// Times that the figure shows; none of one that shows all.
+    pub(crate) fn times(&self) -> &[f64] {
+        match self {
+            Self::RadialProfile { times, .. }
+            | Self::Flow { times, .. }
+            | Self::Cells { times, .. }
+            | Self::Map { times, .. }
+            | Self::Profile { times, .. } => times,
+            Self::ForceChains { time, .. } => std::slice::from_ref(time),
+            _ => &[],
+        }
+    }
+
+    /// Whether its times are in units of sqrt(H/g) where a column spreads.
+    pub(crate) fn is_scaled(&self) -> bool {
+        !matches!(self, Self::Map { .. } | Self::Profile { .. })
+    }
+
     /// What a figure needs; `front` is the number that says how far the sample spread.
     pub(crate) fn needs(&self, front: &'static str) -> Need<'_> {
         match self {
             Self::Series { table, columns, stage, .. } => {
                 let names = columns.iter().map(String::as_str).collect();
+                Need { key: "table", writer: "Table", output: table, names, stage: stage.as_deref() }
+            }
+            Self::Curve { table, x, columns, stage, .. } => {
+                let mut names: Vec<&str> = columns.iter().map(String::as_str).collect();
+                // Time is in every table.
+                names.extend(Some(x.as_str()).filter(|x| *x != "time"));
                 Need { key: "table", writer: "Table", output: table, names, stage: stage.as_deref() }
             }
             Self::Runout { table, stage, .. } => Need {

@@ -150,7 +150,7 @@ impl Chosen {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum FigureSpec {
-    /// Columns of a table over time.
+    /// Columns of a table over time; one chart for each unit.
     Series {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -163,6 +163,23 @@ pub enum FigureSpec {
         #[serde(default)]
         stage: Option<String>,
         /// Curves from elsewhere, over the same time.
+        #[serde(default)]
+        references: Vec<ReferenceCurve>,
+    },
+    /// Columns of a table over another column of it, such as stress over strain; one chart for each unit.
+    Curve {
+        /// Name of the figure in the run folder, without ending.
+        path: String,
+        /// Path of the `Table` output to read.
+        table: String,
+        /// Column along x.
+        x: String,
+        /// Columns to draw, at least one.
+        columns: Vec<String>,
+        /// Name of the stage from whose start on the rows are drawn; by default all of the run is drawn.
+        #[serde(default)]
+        stage: Option<String>,
+        /// Curves from elsewhere, over the same column, in the unit of the first one to draw.
         #[serde(default)]
         references: Vec<ReferenceCurve>,
     },
@@ -219,7 +236,8 @@ pub enum FigureSpec {
         color: String,
         /// Name of the stage from whose start times count.
         stage: String,
-        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
+        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in
+        /// seconds for all others. Time 0 is the last frame before the stage begins.
         times: Vec<f64>,
     },
     /// Voronoi cells over the grains, grey by their packing density, dark where it is high and white at the free surface; in
@@ -234,7 +252,8 @@ pub enum FigureSpec {
         range: Option<Vec<f64>>,
         /// Name of the stage from whose start times count.
         stage: String,
-        /// Times, at least one, in units of sqrt(H/g) of a column; in seconds for other samples.
+        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in
+        /// seconds for all others. Time 0 is the last frame before the stage begins.
         times: Vec<f64>,
     },
     /// Force chains: contacts of one frame, their width by the normal force.
@@ -245,7 +264,8 @@ pub enum FigureSpec {
         contacts: String,
         /// Name of the stage from whose start the time counts.
         stage: String,
-        /// Time in units of sqrt(H/g) of a column; in seconds for other samples.
+        /// Time in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in seconds for
+        /// all others. Time 0 is the last frame before the stage begins.
         time: f64,
     },
     /// A field of a fluid, or of grains on a grid, as a colour map, at several times; in space its middle layer along y.

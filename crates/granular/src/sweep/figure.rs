@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use granular_io::figure::{Axis, Chart, Series, Style};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What to draw of a sweep.
@@ -44,8 +44,9 @@ pub fn is_sweep(folder: &Path) -> bool {
 /// Draws a measured number over an axis as `<y>.svg` and `.png` in the folder of the first of these
 /// sweeps; returns the path without ending.
 ///
-/// At each value of an axis stands the mean over the runs that are done, with its standard error as a
-/// bar where there are several. Runs that are not done are left out, and a note says so.
+/// At each value of an axis stands the mean over the runs that are done. Where these differ in seeds only, the bar is
+/// its standard error; where they differ in another axis too, they are no sample of one number, and the bar is their
+/// standard deviation. A note says over what was averaged. Runs that are not done are left out, and a note says so.
 ///
 /// # Errors
 /// When a folder is none of a sweep, there is no such axis or number, or a file cannot be read or
@@ -75,6 +76,13 @@ struct Counts {
     left_out: usize,
     /// Most runs of which a mean was taken.
     averaged: usize,
+    /// Axes other than seeds over which means were taken.
+    mixed: BTreeSet<String>,
+}
+
+/// Whether an axis is a seed: runs along it differ by chance only.
+fn is_seed(axis: &str) -> bool {
+    axis.rsplit('.').next() == Some("seed")
 }
 
 /// Label of a series, and its values by x.
@@ -88,7 +96,7 @@ fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -
     }
     for (colour, (label, groups)) in curves.into_iter().enumerate() {
         let label = if label.is_empty() { "this sweep".to_owned() } else { label };
-        let series = series(label.clone(), groups).colour(colour % 7);
+        let series = series(label.clone(), groups, counts.mixed.is_empty()).colour(colour % 7);
         let mut before: Option<PowerLaw> = None;
         for &range in &view.fits {
             let law = PowerLaw::of(&series.points, range).ok_or_else(|| {
@@ -104,7 +112,15 @@ fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -
         chart = chart.with(series);
     }
     if counts.averaged > 1 {
-        chart = chart.note(format!("means over up to {} runs, bars: their standard error", counts.averaged));
+        let Counts { averaged, mixed, .. } = counts;
+        chart = if mixed.is_empty() {
+            chart.note(format!("means over up to {averaged} seeds, bars: their standard error"))
+        } else {
+            let mixed = mixed.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+            chart
+                .note(format!("means over all values of {mixed}, up to {averaged} runs: no repetitions;"))
+                .note("bars: standard deviation. --by has a curve for each value")
+        };
     }
     if counts.left_out > 0 {
         let Counts { runs, left_out, .. } = counts;
@@ -135,6 +151,14 @@ impl Collected {
         let (x, y) = (self.along(view.x.as_deref())?, self.column(y));
         let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
         let before = counts.left_out;
+        let others = self.axes.iter().filter(|axis| *axis != x && Some(axis.as_str()) != by);
+        let varies = |axis: &&String| {
+            let first = self.runs.first().map(|run| &run["values"][axis.as_str()]);
+            self.runs.iter().any(|run| Some(&run["values"][axis.as_str()]) != first)
+        };
+        // Along a number of their own runs with different values do not meet by repetition.
+        let mixed = others.filter(|axis| !is_seed(axis)).filter(varies);
+        counts.mixed.extend(mixed.cloned());
         for run in &self.runs {
             counts.runs += 1;
             let (Some(value), Some(at)) = (run["measures"][y].as_f64(), self.place(run, x)?) else {
@@ -228,8 +252,8 @@ fn entry<T>(list: &mut Vec<(String, Vec<T>)>, label: String) -> &mut Vec<T> {
     &mut list[at].1
 }
 
-/// Means with the standard errors of them.
-fn series(label: String, mut groups: Vec<Group>) -> Series {
+/// Means with their standard errors, or where the values are no repetitions with the standard deviations.
+fn series(label: String, mut groups: Vec<Group>, are_repetitions: bool) -> Series {
     groups.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut points, mut errors) = (Vec::new(), Vec::new());
     for (x, values) in groups {
@@ -237,7 +261,8 @@ fn series(label: String, mut groups: Vec<Group>) -> Series {
         let mean = values.iter().sum::<f64>() / count;
         let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
         points.push([x, mean]);
-        errors.push(if count > 1.0 { (squares / (count - 1.0) / count).sqrt() } else { 0.0 });
+        let among = if are_repetitions { count } else { 1.0 };
+        errors.push(if count > 1.0 { (squares / (count - 1.0) / among).sqrt() } else { 0.0 });
     }
     if errors.iter().all(|&error| error == 0.0) {
         return Series::new(label, points, Style::Markers);
@@ -342,10 +367,51 @@ mod tests {
 
     #[test]
     fn means_have_the_standard_error_of_their_values() {
-        let found = series("a".to_owned(), vec![(2.0, vec![1.0, 3.0]), (1.0, vec![5.0])]);
+        let groups = vec![(2.0, vec![1.0, 3.0]), (1.0, vec![5.0])];
+        let found = series("a".to_owned(), groups.clone(), false);
+        assert_eq!(found.style, Style::ErrorBars(vec![0.0, 2.0_f64.sqrt()]));
+        let found = series("a".to_owned(), groups, true);
         assert_eq!(found.points, [[1.0, 5.0], [2.0, 2.0]]);
         assert_eq!(found.style, Style::ErrorBars(vec![0.0, 1.0]));
         assert_eq!(number("68 mm"), Some(68.0));
         assert_eq!(number("Ballistic"), None);
+    }
+
+    #[test]
+    fn a_mean_over_an_axis_is_no_standard_error() {
+        let run = |a: &str, seed: &str, friction: &str, value: f64| {
+            serde_json::json!({
+                "values": { "a": a, "sample.seed": seed, "friction": friction }, "measures": { "runout": value },
+            })
+        };
+        let axes = ["a", "sample.seed", "friction"].map(str::to_owned).to_vec();
+        let sweep = |frictions: [&str; 2]| Collected {
+            path: PathBuf::new(),
+            axes: axes.clone(),
+            runs: vec![
+                run("1", "1", frictions[0], 2.0),
+                run("1", "2", frictions[1], 4.0),
+                run("2", "1", frictions[0], 5.0),
+                run("2", "2", frictions[1], 5.0),
+            ],
+        };
+        let drawn = |frictions, by: Option<&str>| {
+            let view = View { by: by.map(str::to_owned), ..View::default() };
+            let (mut curves, mut counts) = (Vec::new(), Counts::default());
+            sweep(frictions).add_curves("", "runout", &view, &mut curves, &mut counts).unwrap();
+            chart(["a", "runout"], &view, curves, &counts).unwrap()
+        };
+        let seeds = drawn(["0.5", "0.5"], None);
+        assert_eq!(seeds.notes, ["means over up to 2 seeds, bars: their standard error"]);
+        assert_eq!(seeds.series[0].style, Style::ErrorBars(vec![1.0, 0.0]));
+        let mixed = drawn(["0.3", "0.5"], None);
+        assert!(
+            mixed.notes[0].starts_with("means over all values of friction, up to 2 runs"),
+            "{:?}",
+            mixed.notes
+        );
+        assert_eq!(mixed.series[0].style, Style::ErrorBars(vec![2.0_f64.sqrt(), 0.0]));
+        // A curve for each value averages over nothing.
+        assert!(drawn(["0.3", "0.5"], Some("friction")).notes.is_empty());
     }
 }

@@ -14,6 +14,8 @@ const BAND: [f64; 2] = [1.2, 2.8];
 /// Rolling friction with which a deposit comes to rest within the run: a disk that rolls at
 /// 0.3 m/s stops after 7 cm.
 const ROLLING_FRICTION: f64 = 0.1;
+/// Disks with which a run-out can be judged: in fewer the front is a few disks.
+const BEARS: usize = 1000;
 /// Share by which a claim may be missed.
 const NEAR: f64 = 0.15;
 
@@ -21,6 +23,7 @@ pub(super) fn run_out(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let samples: &[(usize, u64)] =
         if effort == Effort::Full { &[(400, 8), (1000, 6), (3000, 4)] } else { &[(400, 3)] };
     for &(grains, seeds) in samples {
+        rows.claims_need(grains, BEARS);
         let seeds: Vec<u64> = (1..=seeds).collect();
         let of = |seed: u64, rolling: f64| {
             let column = Collapse::of(grains).seed(seed);

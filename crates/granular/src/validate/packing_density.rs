@@ -51,9 +51,13 @@ impl Seen {
     }
 }
 
+/// Disks with which the density of a flow can be judged.
+const BEARS: usize = 1000;
+
 pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let (grains, seeds): (usize, &[u64]) =
         if effort == Effort::Full { (3000, &[1, 2, 3, 4]) } else { (300, &[1]) };
+    rows.claims_need(grains, BEARS);
     let seen = parallel::each(seeds, |&seed| {
         let column = Collapse::of(grains).seed(seed).set(format!("sample.aspect_ratio={ASPECT_RATIO}"));
         column.watch(TIME, look)

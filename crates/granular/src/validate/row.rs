@@ -47,6 +47,8 @@ pub struct Row {
     pub pass: bool,
     /// Whether a failure makes the validation fail.
     pub gate: bool,
+    /// Whether it is judged: a claim is not where fewer grains were run than it takes to bear it.
+    pub judged: bool,
     /// Wall time spent on it \[s\].
     pub seconds: f64,
     /// What else there is to know.
@@ -130,11 +132,17 @@ pub(crate) struct Rows {
     case: &'static str,
     rows: Vec<Row>,
     lap: Instant,
+    judges_claims: bool,
 }
 
 impl Rows {
     pub(crate) fn new(case: &'static str) -> Self {
-        Self { case, rows: Vec::new(), lap: Instant::now() }
+        Self { case, rows: Vec::new(), lap: Instant::now(), judges_claims: true }
+    }
+
+    /// From here on so many grains are run, and a claim takes so many as `needed` to be judged by them.
+    pub(crate) fn claims_need(&mut self, grains: usize, needed: usize) {
+        self.judges_claims = grains >= needed;
     }
 
     pub(crate) fn add(&mut self, measure: Measure) {
@@ -155,6 +163,7 @@ impl Rows {
             tolerance,
             pass,
             gate,
+            judged: gate || self.judges_claims,
             seconds,
             note,
         });

@@ -35,6 +35,7 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let scene = Collapse::of(plan.grains).set("materials.glass.rolling_friction=0".to_owned()).scene()?;
     let scene: Scene = scene.parse().map_err(|problem| Failure::Scene(vec![problem]))?;
     let file = calibrate::friction(&scene, &plan, &|_, _| {})?;
+    rows.claims_need(plan.grains, moderate().grains);
     servo(rows, &file);
     friction(rows, &file);
     dilation(rows, &file);

@@ -34,6 +34,9 @@ const SPEED: f64 = 0.5;
 const STIFFNESS: f64 = 1.6e6;
 const STEP: f64 = 1e-6;
 
+/// Disks with which the claims on pushed piles can be judged.
+const BEARS: usize = 1000;
+
 /// How much is run.
 struct Plan {
     grains: usize,
@@ -125,6 +128,7 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let struck = parallel::each(&blows, |blow| piles[blow.pile].strike(*blow))?;
     required(rows, &plan, &piles, &struck);
     let piles: Vec<f64> = piles.iter().map(|pile| pile.slenderness).collect();
+    rows.claims_need(plan.grains, BEARS);
     claims::add(rows, &plan, &piles, &struck);
     Ok(())
 }

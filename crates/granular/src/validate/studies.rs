@@ -66,6 +66,7 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let hexagonal = size.hexagonal.iter().map(|&nominal| Column { nominal, hexagonal: true });
     let columns: Vec<Column> = random.chain(hexagonal).collect();
     let recorded = parallel::each(&columns, |column| collapse(&size, *column))?;
+    rows.claims_need(size.grains, FULL.grains);
     let of = format!("{} disks, one seed", size.grains);
     aspects::rows(rows, &of, &columns, &recorded);
     flow::rows(rows, &of, &columns, &recorded);

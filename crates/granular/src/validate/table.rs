@@ -48,8 +48,10 @@ pub fn table(rows: &[Row]) -> String {
     }
     let gating = rows.iter().filter(|row| row.gate).count();
     let failed = rows.iter().filter(|row| row.gate && !row.pass).count();
-    let missed = rows.iter().filter(|row| !row.gate && !row.pass).count();
-    let claims = rows.len() - gating;
+    let judged = |row: &&Row| !row.gate && row.judged;
+    let claims = rows.iter().filter(judged).count();
+    let missed = rows.iter().filter(judged).filter(|row| !row.pass).count();
+    let small = rows.len() - gating - claims;
     let seconds: f64 = rows.iter().map(|row| row.seconds).sum();
     let _ = writeln!(
         text,
@@ -57,6 +59,12 @@ pub fn table(rows: &[Row]) -> String {
         gating - failed,
         claims - missed
     );
+    if small > 0 {
+        let _ = writeln!(
+            text,
+            "{small} claims were measured on too few grains to be judged (small); --full runs as many as they take"
+        );
+    }
     text
 }
 
@@ -74,6 +82,7 @@ fn tier(tier: Tier) -> &'static str {
 
 fn verdict(row: &Row) -> &'static str {
     match (row.gate, row.pass) {
+        _ if !row.judged => "small",
         (true, true) => "pass",
         (true, false) => "FAILED",
         (false, true) => "met",
@@ -124,6 +133,27 @@ mod tests {
         let text = table(&rows.finish());
         assert!(text.lines().all(|line| line.chars().count() <= 120), "{text}");
         assert!(text.contains("differs") && text.contains("pass") && text.contains("1 of 1 required"));
+        assert!(text.contains("0 of 1 claims met") && !text.contains("too few"));
+    }
+
+    #[test]
+    fn a_claim_is_judged_at_a_size_that_can_bear_it_only() {
+        let mut rows = Rows::new("a_case");
+        let claim = || Measure::relative(Tier::Thesis, "run-out", 1.0, 2.0, 0.1).claim();
+        rows.claims_need(80, 1000);
+        rows.add(claim());
+        rows.add(Measure::absolute(Tier::Conservation, "energy", 1.0, 0.0, 0.1));
+        rows.claims_need(1000, 1000);
+        rows.add(claim());
+        let rows = rows.finish();
+        assert_eq!(rows.iter().map(|row| row.judged).collect::<Vec<_>>(), [false, true, true]);
+        let text = table(&rows);
+        // What is required is so at any size.
+        assert!(text.contains("0 of 1 required rows passed, 0 of 1 claims met"), "{text}");
+        assert!(
+            text.contains("1 claims were measured on too few grains") && text.contains("small"),
+            "{text}"
+        );
     }
 
     #[test]

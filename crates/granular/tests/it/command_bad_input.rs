@@ -142,6 +142,20 @@ const SCENE_CASES: &[Case<'_>] = &[
     ("path: \"series.csv\"", "path: \"run.json\"", 2, &["`run.json`, which the run itself writes"]),
     ("path: \"grains\"", "path: \"snapshots/a\"", 2, &["`snapshots/a`, which the run itself writes"]),
     ("path: \"energies\"", "path: \"runout\"", 2, &["`figures.1.path` is `runout` again"]),
+    (
+        "path: \"grains\"",
+        "path: \"series.csv/a\"",
+        2,
+        &["`series.csv/a` again", "`outputs.0.write.path` writes it"],
+    ),
+    (
+        "path: \"contacts\"",
+        "path: \".//grains\"",
+        2,
+        &["`.//grains`", "a relative path inside the run folder"],
+    ),
+    ("path: \"energies\"", "path: \"a//../runout\"", 2, &["inside the run folder"]),
+    ("path: \"series.csv\"", "path: \"series.csv.tmp\"", 2, &["as files are called while they are written"]),
     // Stability.
     (
         "Dem(())",
@@ -225,7 +239,10 @@ fn grains_one_by_one_are_checked_at_their_place() {
     fails(&scratch, text.as_bytes(), &[], 2, &parts);
     fails(&scratch, scene("").as_bytes(), &[], 2, &["`sample` is empty", "at least one grain"]);
     let near = one.replacen("\"1 mm\"", "\"2.8 mm\"", 1);
-    let parts = ["small.ron: overlap at the start is 20.0000 % of the radius; allowed: at most 5 %"];
+    let parts = [
+        "small.ron: overlap at the start is 20.0000 % of the radius; allowed: at most 5 %",
+        "grain 0 at (0.001000, 0.001000) m and grain 1 at (0.002800, 0.001000) m overlap by 2.000e-4 m",
+    ];
     fails(&scratch, scene(&format!("{one}{near}")).as_bytes(), &[], 3, &parts);
     let beside = scene(one).replace("Floor(", "Right(");
     fails(&scratch, beside.as_bytes(), &[], 2, &["a wall beside a column", "write a Plane instead"]);

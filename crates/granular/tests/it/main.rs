@@ -9,6 +9,7 @@ mod command_boundaries;
 mod command_coarse;
 mod command_disk;
 mod command_empty;
+mod command_figures;
 mod command_files;
 mod command_flow;
 mod command_interrupt;

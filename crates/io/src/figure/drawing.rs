@@ -46,10 +46,29 @@ impl Fill {
 
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
-    Path { outline: Vec<Segment>, fill: Option<Fill>, stroke: Option<Stroke> },
-    Circle { center: Spot, radius: f64, fill: Option<Fill>, stroke: Option<Stroke> },
-    Text { text: String, outline: Vec<Segment>, colour: Colour },
-    Image { image: Image, area: Area },
+    Path {
+        outline: Vec<Segment>,
+        fill: Option<Fill>,
+        stroke: Option<Stroke>,
+    },
+    Circle {
+        center: Spot,
+        radius: f64,
+        fill: Option<Fill>,
+        stroke: Option<Stroke>,
+    },
+    /// A text on the base line through `at`, `width` pixels wide, with its outlines for what has no fonts.
+    Text {
+        text: String,
+        at: Spot,
+        width: f64,
+        lettering: Lettering,
+        outline: Vec<Segment>,
+    },
+    Image {
+        image: Image,
+        area: Area,
+    },
 }
 
 /// Where a text lies against its spot.
@@ -182,9 +201,8 @@ impl Drawing {
             Segment::Quad(a, b) => Segment::Quad(place(a), place(b)),
             Segment::Close => Segment::Close,
         });
-        let shape =
-            Shape::Text { text: text.to_owned(), outline: outline.collect(), colour: lettering.colour };
-        self.shapes.push(shape);
+        let (text, outline) = (text.to_owned(), outline.collect());
+        self.shapes.push(Shape::Text { text, at, width, lettering, outline });
     }
 
     /// Writes a text, smaller where it would be wider than `width`.

@@ -5,9 +5,13 @@ use super::chart::Scale;
 use super::colour::Colour;
 use super::colour_bar::ColourBar;
 use super::drawing::{Anchor, Area, Drawing, Fill, Lettering, Spot, Stroke};
+use super::font::{Font, Weight};
 use super::geometry::clip_line;
 use super::layout::{Layout, Request, are_usable};
 use super::scale::{range_of, three_digits};
+
+/// Size of the names of marks in pixels.
+const LABEL: f64 = 11.0;
 
 /// A disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +44,19 @@ pub struct Patch {
     pub value: f64,
 }
 
+/// A line that is no wall, such as the edge of a place where grains come in, with its name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mark {
+    /// Its points, in the unit of the axes; one point is drawn as a cross.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
+    /// Whether the line is broken.
+    pub dashed: bool,
+    /// Text at its middle; none when empty.
+    pub label: String,
+}
+
 /// One snapshot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrainPanel {
@@ -53,6 +70,8 @@ pub struct GrainPanel {
     pub walls: Vec<[[f64; 2]; 2]>,
     /// Contacts, drawn above the grains.
     pub chains: Vec<Chain>,
+    /// Other lines and their names, drawn above all.
+    pub marks: Vec<Mark>,
 }
 
 /// Snapshots in a grid with the same scale, colours and axes.
@@ -72,6 +91,8 @@ pub struct GrainFigure {
     pub quantity: String,
     /// What the widths of chains show, with its unit in brackets; for the note below.
     pub force: String,
+    /// Small text below, after that of chains; none when empty.
+    pub note: String,
     /// First and last value of the colours; from the data when `None`.
     pub values: Option<[f64; 2]>,
     /// Lower left and upper right corner to show; all when `None`. Grains whose center lies
@@ -103,13 +124,13 @@ impl GrainFigure {
 
     /// The figure.
     pub fn figure(&self) -> Figure {
-        let noted = self.strongest() > 0.0 && !self.force.is_empty();
+        let note = self.notes();
         let barred = !self.quantity.is_empty() && self.values().any(f64::is_finite);
         let layout = Layout::of(&Request {
             title: &self.title,
             labels: self.panels.iter().any(|panel| !panel.label.is_empty()),
             bar: barred,
-            note: noted,
+            note: !note.is_empty(),
             count: self.panels.len(),
             columns: self.columns,
             width: self.width,
@@ -125,12 +146,20 @@ impl GrainFigure {
             let bar = ColourBar { quantity, range, colour, strips: 64, beyond: [false; 2] };
             bar.draw(&mut drawing, &layout);
         }
-        if noted {
-            let text = format!("Line width: {}, widest {}", self.force, three_digits(self.strongest()));
-            let note = Lettering { colour: Colour::FAINT_TEXT, ..Lettering::plain(10.5, Anchor::Start) };
-            drawing.text(&text, [layout.left, layout.size[1] - 7.0], note);
+        if !note.is_empty() {
+            let small = Lettering { colour: Colour::FAINT_TEXT, ..Lettering::plain(10.5, Anchor::Start) };
+            let room = layout.size[0] - layout.left - 8.0;
+            drawing.text_within(&note, [layout.left, layout.size[1] - 7.0], room, small);
         }
         Figure { drawing }
+    }
+
+    /// The text below.
+    fn notes(&self) -> String {
+        let widths = (self.strongest() > 0.0 && !self.force.is_empty())
+            .then(|| format!("Line width: {}, widest {}", self.force, three_digits(self.strongest())));
+        let own = Some(self.note.clone()).filter(|note| !note.is_empty());
+        widths.into_iter().chain(own).collect::<Vec<_>>().join("; ")
     }
 
     fn has_cells(&self) -> bool {
@@ -184,6 +213,9 @@ impl GrainFigure {
             drawing.circle(place(grain.center), radius, Fill::solid(colour), edge);
         }
         self.draw_lines(drawing, area, panel, &place);
+        for mark in &panel.marks {
+            draw_mark(drawing, area, mark, &place);
+        }
         layout.draw_axes(drawing, index, &self.axes);
     }
 
@@ -215,6 +247,48 @@ impl GrainFigure {
     }
 }
 
+fn draw_mark(drawing: &mut Drawing, area: Area, mark: &Mark, place: &dyn Fn([f64; 2]) -> Spot) {
+    let stroke = Stroke { colour: Colour::of_series(1), width: 1.3, dashed: mark.dashed };
+    if mark.points.iter().flatten().any(|x| !x.is_finite()) {
+        return;
+    }
+    let spots: Vec<Spot> = mark.points.iter().map(|&point| place(point)).collect();
+    if let [[x, y]] = spots[..] {
+        drawing.line([x - 4.0, y], [x + 4.0, y], stroke);
+        drawing.line([x, y - 4.0], [x, y + 4.0], stroke);
+    }
+    let closing = spots.last().zip(spots.first()).filter(|_| mark.closed && spots.len() > 2);
+    for (from, to) in spots.windows(2).map(|pair| (&pair[0], &pair[1])).chain(closing) {
+        if let Some([from, to]) = clip_line(&area, *from, *to) {
+            drawing.line(from, to, stroke);
+        }
+    }
+    if mark.label.is_empty() || spots.is_empty() {
+        return;
+    }
+    let ends = |k: usize| {
+        spots.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], spot| {
+            [low.min(spot[k]), high.max(spot[k])]
+        })
+    };
+    let ([left, right], [top, bottom]) = (ends(0), ends(1));
+    let half = 0.5 * Font::new(Weight::Regular).width(&mark.label, LABEL) + 2.0;
+    // Within what encloses it, below a point, at the top of what is upright, and else above the line.
+    let y = match spots.len() {
+        1 => bottom + 1.4 * LABEL,
+        _ if mark.closed && right - left > 2.0 * half && bottom - top > LABEL => 0.5 * (top + bottom + LABEL),
+        _ if !mark.closed && bottom - top > right - left => top.max(area.top) + 1.6 * LABEL,
+        _ => top - 4.0,
+    };
+    let x = (0.5 * (left + right)).clamp(area.left + half, (area.right - half).max(area.left + half));
+    let y = y.clamp(area.top + LABEL, (area.bottom - 3.0).max(area.top + LABEL));
+    // Grains behind it would make it unreadable.
+    let paper = Area { left: x - half, top: y - LABEL, right: x + half, bottom: y + 3.0 };
+    drawing.rectangle(paper, Some(Fill { colour: Colour::WHITE, opacity: 0.8 }), None);
+    let lettering = Lettering { colour: Colour::of_series(1), ..Lettering::plain(LABEL, Anchor::Middle) };
+    drawing.text(&mark.label, [x, y], lettering);
+}
+
 /// Lower left and upper right corner of all that is drawn.
 fn corners_of(figure: &GrainFigure) -> [[f64; 2]; 2] {
     let ends = |k: usize| {
@@ -222,7 +296,10 @@ fn corners_of(figure: &GrainFigure) -> [[f64; 2]; 2] {
             let sides = panel.grains.iter().flat_map(move |grain| {
                 [grain.center[k] - grain.radius.abs(), grain.center[k] + grain.radius.abs()]
             });
-            sides.chain(panel.walls.iter().flatten().map(move |end| end[k]))
+            let walls = panel.walls.iter().flatten().map(move |end| end[k]);
+            let chains = panel.chains.iter().flat_map(move |chain| [chain.from[k], chain.to[k]]);
+            let marks = panel.marks.iter().flat_map(move |mark| mark.points.iter().map(move |end| end[k]));
+            sides.chain(walls).chain(chains).chain(marks)
         });
         let [low, high] = range_of(Scale::Linear, None, grains, 0.0);
         // Whole grains and walls are to be seen.

@@ -26,7 +26,7 @@ fn paint(pixels: &mut Pixmap, shape: &Shape) {
             let [x, y] = center.map(|x| x as f32);
             (PathBuilder::from_circle(x, y, *radius as f32), *fill, *stroke)
         }
-        Shape::Text { outline, colour, .. } => (path(outline), Some(Fill::solid(*colour)), None),
+        Shape::Text { outline, lettering, .. } => (path(outline), Some(Fill::solid(lettering.colour)), None),
     };
     // What has no extent has no path, and leaves no trace.
     let Some(path) = path else { return };

@@ -1,7 +1,11 @@
 //! Drawings as SVG.
 
-use super::drawing::{Drawing, Fill, Segment, Shape, Spot, Stroke};
+use super::drawing::{Anchor, Drawing, Fill, Lettering, Segment, Shape, Spot, Stroke};
+use super::font::Weight;
 use std::fmt::Write;
+
+/// The font of the PNG, and what is near it where that is not installed.
+const FAMILY: &str = "'Open Sans', 'Noto Sans', 'DejaVu Sans', Verdana, sans-serif";
 
 /// Pixels of the drawing per pixel of an image from which on it is shown as squares.
 const LARGE: f64 = 2.0;
@@ -10,7 +14,7 @@ pub(super) fn document(drawing: &Drawing) -> String {
     let [width, height] = drawing.size;
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n\
+         viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"{FAMILY}\">\n<title>{}</title>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
         escaped(&drawing.title)
     );
@@ -45,13 +49,34 @@ fn put(text: &mut String, shape: &Shape) {
             let style = style(fill.as_ref(), stroke.as_ref());
             writeln!(text, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"{style}/>")
         }
-        Shape::Text { text: label, outline, colour } => {
-            let (label, colour) = (escaped(label), colour.hex());
-            let path = path(outline);
-            writeln!(text, "<path role=\"text\" aria-label=\"{label}\" d=\"{path}\" fill=\"{colour}\"/>")
+        Shape::Text { text: label, at, width, lettering, .. } => {
+            if label.trim().is_empty() {
+                return;
+            }
+            writeln!(text, "<text{}>{}</text>", attributes(*at, *width, lettering), escaped(label))
         }
     };
     written.expect("writing to a string cannot fail");
+}
+
+/// Where and how a text stands. It is stretched to the width that it has in the bundled font, so that the figure keeps its
+/// layout in any other.
+fn attributes([x, y]: Spot, width: f64, lettering: &Lettering) -> String {
+    let (size, colour) = (number(lettering.size), lettering.colour.hex());
+    let (x, y, width) = (number(x), number(y), number(width));
+    let mut attributes = format!(" x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{colour}\"");
+    if lettering.weight == Weight::Semibold {
+        attributes.push_str(" font-weight=\"600\"");
+    }
+    match lettering.anchor {
+        Anchor::Start => {}
+        Anchor::Middle => attributes.push_str(" text-anchor=\"middle\""),
+        Anchor::End => attributes.push_str(" text-anchor=\"end\""),
+    }
+    if lettering.upward {
+        attributes.push_str(&format!(" transform=\"rotate(-90 {x} {y})\""));
+    }
+    attributes + &format!(" textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"")
 }
 
 fn style(fill: Option<&Fill>, stroke: Option<&Stroke>) -> String {

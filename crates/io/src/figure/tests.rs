@@ -85,6 +85,41 @@ fn odd_grains_still_give_a_figure() {
     assert!(is_sane(&figure.figure()));
 }
 
+#[test]
+fn text_in_a_drawing_stays_text() {
+    let chart = Chart::new("Cooling & more", Axis::linear("time [s]"), Axis::linear("T / T₀ [-]"));
+    let svg = chart.with(Series::new("run 7", vec![[0.0, 1.0], [1.0, 0.5]], Style::Line)).figure().svg();
+    for label in ["Cooling &amp; more", "time [s]", "T / T₀ [-]", "run 7", "0.5"] {
+        assert!(svg.contains(&format!(">{label}</text>")), "{label}: {svg}");
+    }
+    // The label of the axis at the left is read upwards, and each text keeps its width in any font.
+    assert!(
+        svg.contains("rotate(-90 ") && svg.matches("textLength=").count() == svg.matches("</text>").count()
+    );
+}
+
+#[test]
+fn marks_have_names_and_are_within_the_figure() {
+    let edge = |closed, dashed, label: &str| Mark {
+        points: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 2.0]],
+        closed,
+        dashed,
+        label: label.to_owned(),
+    };
+    let point = Mark { points: vec![[9.0, 3.0]], label: "gauge".into(), ..Mark::default() };
+    let marks = vec![edge(true, true, "rain"), edge(false, false, ""), point, Mark::default()];
+    let odd = Mark { points: vec![[f64::NAN, 0.0]], label: "odd".into(), ..Mark::default() };
+    let panel = GrainPanel { marks: [marks, vec![odd]].concat(), ..GrainPanel::default() };
+    let mut figure = GrainFigure::new("", "", vec![panel]);
+    figure.note = "two edges".to_owned();
+    let svg = figure.figure().svg();
+    assert!(is_sane(&figure.figure()), "{svg}");
+    for label in ["rain", "gauge", "two edges", "8"] {
+        assert!(svg.contains(&format!(">{label}</text>")), "{label}: {svg}");
+    }
+    assert!(!svg.contains(">odd<") && svg.matches("stroke-dasharray").count() == 3, "{svg}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]

@@ -1,8 +1,10 @@
 //! What a scene says of a fluid, in the terms of the lattice.
 
 mod obstacles;
+mod spacing;
 
 use super::super::Problems;
+use super::super::grains::quoted;
 use crate::scene::Scene;
 use crate::scene::fluid::{FaceSpec, FacesSpec, FluidSpec, ProfileSpec, StartSpec};
 use granular_core::units::{Measured, Unit, Velocity};
@@ -59,7 +61,7 @@ impl Reader<'_> {
             bodies.extend(path.map(|body| (k, body)));
         }
         let start = self.start::<D>(&faces)?;
-        let gauges = self.gauges::<D>();
+        let gauges = self.gauges::<D>(extent);
         let mut setup = Setup::new(cells, self.spec.spacing.value(), self.fluid.viscosity.value(), 1.0);
         setup.origin = origin;
         setup.density = self.fluid.density.value();
@@ -129,7 +131,8 @@ impl Reader<'_> {
             let count = (size / spacing).round().max(1.0);
             if !(spacing > 0.0 && count < 1e9) || (size / spacing - count).abs() > FIT * count {
                 let value = format!("{spacing} m, which does not divide fluid.size.{axis} of {size} m");
-                let hint = format!("{} m does", size / count);
+                let sizes: Vec<f64> = (0..D::N).map(|axis| extent.size.component(axis)).collect();
+                let hint = spacing::advice(&sizes, spacing);
                 let path = format!("solvers.{}.spacing", self.name);
                 self.problems.add(path, value, "a length that divides all sizes", hint);
                 return None;
@@ -249,11 +252,26 @@ impl Reader<'_> {
         })
     }
 
-    fn gauges<D: Dim>(&mut self) -> Vec<Gauge<D>> {
+    /// The gauges; those outside the box would show no number.
+    fn gauges<D: Dim>(&mut self, extent: Extent<D>) -> Vec<Gauge<D>> {
         let mut gauges = Vec::new();
         for (name, place) in &self.fluid.gauges {
-            let place = self.problems.vector::<D, _>(&format!("fluid.gauges.{name}"), place);
-            gauges.extend(place.map(|place| Gauge { name: name.clone(), place }));
+            let path = format!("fluid.gauges.{}", quoted(name));
+            let Some(place) = self.problems.vector::<D, _>(&path, place) else { continue };
+            let outside = (0..D::N).find(|&axis| {
+                let (low, size) = (extent.low.component(axis), extent.size.component(axis));
+                !(low - FIT * size..=low + size + FIT * size).contains(&place.component(axis))
+            });
+            if let Some(axis) = outside {
+                let (low, size) = (extent.low.component(axis), extent.size.component(axis));
+                let axis_name = D::AXES[axis];
+                let value = format!("at {axis_name} = {} m, outside the fluid", place.component(axis));
+                let (low, high) = (spacing::short(low), spacing::short(low + size));
+                let allowed = format!("{axis_name} from {low} to {high} m");
+                self.problems.add(path, value, allowed, "");
+                continue;
+            }
+            gauges.push(Gauge { name: name.clone(), place });
         }
         gauges
     }

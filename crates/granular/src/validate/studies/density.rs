@@ -18,6 +18,8 @@ const NUMBERS: [&str; 6] =
     ["front", "height", "potential_energy", "bulk_density", "solid_fraction", "energy_residual"];
 /// Share of the potential energy at the release that may be missing in the balance.
 const RESIDUAL: f64 = 1e-3;
+/// Disks with which densities and run-outs of dense and loose columns can be told apart.
+const BEARS: usize = 500;
 /// Distances of final densities, and of densities from those of the thesis, over them.
 const EQUAL: f64 = 0.005;
 const NEAR: f64 = 0.01;
@@ -34,6 +36,7 @@ struct Column {
 pub(in crate::validate) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let (grains, seeds): (usize, &[u64]) =
         if effort == Effort::Full { (500, &[1, 2, 3]) } else { (150, &[1]) };
+    rows.claims_need(grains, BEARS);
     let aspect_ratios: &[f64] = if effort == Effort::Full { &[0.8, 6.0] } else { &[0.8] };
     let mut columns = Vec::new();
     for &aspect_ratio in aspect_ratios {

@@ -1,0 +1,3 @@
+//! Tests of what the outside sees.
+
+mod units_page;
