@@ -84,17 +84,35 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
         }
     }
     problems.extend(model::crowded_inlets(scene, &steps));
-    for bound in limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds()) {
-        problems.push(format!(
-            "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
-            bound.name,
-            bound.value,
-            bound.allowed,
-            bound.why,
-            unit = bound.unit
-        ));
-    }
+    problems.extend(broken_bounds(&limits));
     (limits, steps, problems)
+}
+
+/// The bounds that refuse a run.
+fn broken_bounds(limits: &Limits) -> Vec<String> {
+    let broken = limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds());
+    broken
+        .map(|bound| {
+            format!(
+                "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
+                bound.name,
+                bound.value,
+                bound.allowed,
+                bound.why,
+                unit = bound.unit
+            )
+        })
+        .collect()
+}
+
+/// Reads and builds a scene that is to be run. A fluid of many cells whose bounds are broken is refused before it is built.
+///
+/// # Errors
+/// With all problems of the scene, or why it is refused.
+pub(crate) fn read_to_run(text: &SceneText) -> Result<(Scene, Model), Failure> {
+    let limits = model::early_limits(&Scene::of(text)?);
+    let problems = limits.map_or(Vec::new(), |limits| broken_bounds(&limits));
+    if problems.is_empty() { read(text) } else { Err(refusal(text.name(), &problems)) }
 }
 
 /// Checks a scene and measures its speed on a few steps.
@@ -110,7 +128,7 @@ pub fn check(text: &SceneText) -> Result<Report, Failure> {
 /// # Errors
 /// As [`check`].
 pub fn check_within(text: &SceneText, probe: Duration) -> Result<Report, Failure> {
-    let (scene, mut model) = read(text)?;
+    let (scene, mut model) = read_to_run(text)?;
     let (limits, steps, problems) = limits_of(&scene, &model);
     let mut memory = model.simulation.solver().memory();
     if voronoi::is_unused(&scene, model.simulation.solver()) {

@@ -159,7 +159,12 @@ impl Verb {
         match self {
             Self::New { template, list: _ } => new(common, template.as_deref()),
             Self::Check { scene, edits } => {
-                let report = check::check(&read(&scene, &edits)?)?;
+                let report = check::check(&read(&scene, &edits)?).inspect_err(|failure| {
+                    // Refused before there was a report.
+                    if common.json && matches!(failure, Failure::Refused(_)) {
+                        print(&(pretty(&failure_json(failure)) + "\n"));
+                    }
+                })?;
                 show(common, &report.to_json(), || report.to_string());
                 if report.problems.is_empty() { Ok(()) } else { Err(report.refusal()) }
             }

@@ -11,6 +11,7 @@ mod command_disk;
 mod command_files;
 mod command_flow;
 mod command_interrupt;
+mod command_limits;
 mod command_push;
 mod command_sample;
 mod command_snapshots;
