@@ -94,17 +94,35 @@ pub(crate) fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<
         }
     }
     problems.extend(model::crowded_inlets(scene, &steps));
-    for bound in limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds()) {
-        problems.push(format!(
-            "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
-            bound.name,
-            bound.value,
-            bound.allowed,
-            bound.why,
-            unit = bound.unit
-        ));
-    }
+    problems.extend(broken_bounds(&limits));
     (limits, steps, problems)
+}
+
+/// The bounds that refuse a run.
+fn broken_bounds(limits: &Limits) -> Vec<String> {
+    let broken = limits.bounds.iter().filter(|bound| bound.refuses && !bound.holds());
+    broken
+        .map(|bound| {
+            format!(
+                "{} is {:.4} {unit}; allowed: at most {} {unit}; {}",
+                bound.name,
+                bound.value,
+                bound.allowed,
+                bound.why,
+                unit = bound.unit
+            )
+        })
+        .collect()
+}
+
+/// Reads and builds a scene that is to be run. A fluid of many cells whose bounds are broken is refused before it is built.
+///
+/// # Errors
+/// With all problems of the scene, or why it is refused.
+pub(crate) fn read_to_run(text: &SceneText) -> Result<(Scene, Model), Failure> {
+    let limits = model::early_limits(&Scene::of(text)?);
+    let problems = limits.map_or(Vec::new(), |limits| broken_bounds(&limits));
+    if problems.is_empty() { read(text) } else { Err(refusal(text.name(), &problems)) }
 }
 
 /// Checks a scene and measures its speed on a few steps.
@@ -132,7 +150,7 @@ pub fn check_and_draw(text: &SceneText, drawing: Option<&Path>) -> Result<Report
 }
 
 fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result<Report, Failure> {
-    let (scene, mut model) = read(text)?;
+    let (scene, mut model) = read_to_run(text)?;
     let drawing = drawing.map(|path| figures::draw_initial(&scene, &model, path)).transpose()?;
     let sample = Extents::of(model.simulation.solver());
     let mut warnings = figures::times_beyond(&scene, model.column);

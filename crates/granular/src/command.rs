@@ -164,7 +164,13 @@ impl Verb {
         match self {
             Self::New { template, list: _ } => new(common, template.as_deref()),
             Self::Check { scene, edits, draw } => {
-                let report = check::check_and_draw(&read(&scene, &edits)?, draw.as_deref())?;
+                let checked = check::check_and_draw(&read(&scene, &edits)?, draw.as_deref());
+                let report = checked.inspect_err(|failure| {
+                    // Refused before there was a report.
+                    if common.json && matches!(failure, Failure::Refused(_)) {
+                        print(&(pretty(&failure_json(failure)) + "\n"));
+                    }
+                })?;
                 show(common, &report.to_json(), || report.to_string());
                 if report.problems.is_empty() { Ok(()) } else { Err(report.refusal()) }
             }

@@ -87,7 +87,7 @@ impl fmt::Display for Failure {
             Self::Io(reason) => write!(f, "error: {reason}"),
             Self::Interrupted { hint, .. } => write!(f, "interrupted: the state is saved\n  = help: {hint}"),
             Self::NotBegun { .. } => {
-                f.write_str("interrupted: nothing had begun\n  = help: give the same command again")
+                f.write_str("interrupted: there was nothing to save\n  = help: give the same command again")
             }
             Self::Invalid(reason) => write!(f, "invalid: {reason}"),
         }

@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::scene::{Dimension, End, Scene, SolverSpec};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Measured, Unit};
-use granular_core::{D2, D3, Dim, Simulation, Solver, Vector};
+use granular_core::{D2, D3, Dim, Limits, Simulation, Solver, Vector};
 use granular_dem::MaterialId;
 use granular_lbm::{D2Q9, D3Q19};
 use std::path::Path;
@@ -156,6 +156,19 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         (Dimension::Space, SolverSpec::Dem(spec)) => grains::build::<D3>(scene, name, spec, problems),
         (Dimension::Plane, SolverSpec::Lbm(spec)) => fluid::build::<D2Q9, 9>(scene, name, spec, problems),
         (Dimension::Space, SolverSpec::Lbm(spec)) => fluid::build::<D3Q19, 19>(scene, name, spec, problems),
+    }
+}
+
+/// Limits of a fluid of so many cells that building it takes long; nothing for other scenes, and for those that are wrong.
+pub(crate) fn early_limits(scene: &Scene) -> Option<Limits> {
+    match (scene.dimension, scene.solvers.iter().next()?) {
+        (Dimension::Plane, (name, SolverSpec::Lbm(spec))) => {
+            fluid::early_limits::<D2Q9, 9>(scene, name, spec)
+        }
+        (Dimension::Space, (name, SolverSpec::Lbm(spec))) => {
+            fluid::early_limits::<D3Q19, 19>(scene, name, spec)
+        }
+        _ => None,
     }
 }
 

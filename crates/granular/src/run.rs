@@ -122,7 +122,7 @@ pub fn run(
     quiet: bool,
     interrupt: &Interrupt,
 ) -> Result<Value, Failure> {
-    let (scene, model) = check::read(text)?;
+    let (scene, model) = check::read_to_run(text)?;
     let (_, steps, problems) = check::limits_of(&scene, &model);
     if !problems.is_empty() {
         return Err(check::refusal(text.name(), &problems));

@@ -5,7 +5,7 @@ mod read;
 use super::{Action, Model, Problems, outputs};
 use crate::scene::{Change, End, Scene};
 use crate::scene_file::SceneProblem;
-use granular_core::{Dim, Simulation, Vector};
+use granular_core::{Dim, Limits, Simulation, Solver, Vector};
 use granular_coupling::{CarriedObstacles, PrescribedMotion};
 use granular_lbm::spec::{LbmSpec, PrecisionSpec};
 use granular_lbm::{D2Q9, D3Q19, Lattice, Lbm, Real, SetupError};
@@ -40,6 +40,30 @@ pub(super) fn build<L: Lattice<Q>, const Q: usize>(
         return Err(problems.0);
     }
     Ok(Model { simulation, stages, time_step: None, column: None, up: L::Dim::UP })
+}
+
+/// Cells from which on a lattice takes long to build.
+const MANY_CELLS: usize = 1_000_000;
+
+/// Limits of a lattice of many cells, from one of the same cells, faces and speeds that is small: none depends on the
+/// number of cells.
+pub(super) fn early_limits<L: Lattice<Q>, const Q: usize>(
+    scene: &Scene,
+    name: &str,
+    spec: &LbmSpec,
+) -> Option<Limits> {
+    let mut problems = Problems::default();
+    let fluid = scene.fluid.as_ref()?;
+    let Fluid { mut setup, .. } =
+        Reader { scene, fluid, spec, name, problems: &mut problems }.read::<L::Dim>()?;
+    if !problems.0.is_empty() || setup.cells.iter().product::<usize>() < MANY_CELLS {
+        return None;
+    }
+    setup.cells = setup.cells.map(|along| along.min(8));
+    (setup.obstacles, setup.gauges) = (Vec::new(), Vec::new());
+    let mut limits = Limits::default();
+    Lbm::<L, Q, f64>::new(setup).ok()?.limits(&mut limits);
+    Some(limits)
 }
 
 /// What belongs to grains only.

@@ -5,7 +5,7 @@ use granular_io::read_table;
 use std::fs;
 
 /// A deposit that is shaken and saved.
-const PREPARE: &str = r#"Scene(
+pub(crate) const PREPARE: &str = r#"Scene(
     version: 1, dimension: Plane, gravity: [0.0, -9.81],
     materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.3) },
     sample: Column(extent: Grains(150), aspect_ratio: 1.0, grading: EqualMass(min: "0.9 mm", max: "1.4 mm"),
@@ -25,7 +25,7 @@ const PREPARE: &str = r#"Scene(
 )"#;
 
 /// The same grains behind a gate.
-const COLLAPSE: &str = r#"Scene(
+pub(crate) const COLLAPSE: &str = r#"Scene(
     version: 1, dimension: Plane, gravity: [0.0, -9.81],
     materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.3) },
     sample: File(path: "prepared/saved/sample.csv"),

@@ -13,6 +13,7 @@ mod command_figures;
 mod command_files;
 mod command_flow;
 mod command_interrupt;
+mod command_limits;
 mod command_push;
 mod command_sample;
 mod command_snapshots;

@@ -5,12 +5,13 @@ mod spacing;
 
 use super::super::Problems;
 use super::super::grains::quoted;
+use crate::machine::room_for;
 use crate::scene::Scene;
 use crate::scene::fluid::{FaceSpec, FacesSpec, FluidSpec, ProfileSpec, StartSpec};
 use granular_core::units::{Measured, Unit, Velocity};
 use granular_core::{Dim, Linear, Vector};
 use granular_coupling::Body;
-use granular_lbm::spec::{LbmSpec, StepSpec};
+use granular_lbm::spec::{LbmSpec, PrecisionSpec, StepSpec};
 use granular_lbm::{Face, Gauge, OpenScheme, Profile, Setup};
 use std::sync::Arc;
 
@@ -146,7 +147,28 @@ impl Reader<'_> {
                 origin -= D::Vec::along(axis, 0.5 * spacing);
             }
         }
+        let count: f64 = cells.iter().map(|&along| along as f64).product();
+        if let Err(allowed) = room_for(count, self.bytes_per_cell::<D>()) {
+            let value = format!("{spacing} m, which makes {count:.0} cells");
+            self.problems.add(
+                format!("solvers.{}.spacing", self.name),
+                value,
+                allowed,
+                "a larger one makes fewer",
+            );
+            return None;
+        }
         Some((cells, origin))
+    }
+
+    /// Memory that a cell takes while the lattice is made: its populations, its place, and whether it is covered \[bytes\].
+    fn bytes_per_cell<D: Dim>(&self) -> f64 {
+        let populations = if D::N == 2 { 9.0 } else { 19.0 };
+        let number = match self.spec.precision {
+            PrecisionSpec::Double => 8.0,
+            PrecisionSpec::Single => 4.0,
+        };
+        populations * number + 50.0
     }
 
     fn faces<D: Dim>(&mut self, extent: Extent<D>) -> [[Face<D>; 2]; 3] {

@@ -25,6 +25,9 @@ impl Base {
     /// A scene with few grains, so that thousands are tried in a minute.
     pub(super) fn of(name: String, text: &str) -> Self {
         let mut text = text.to_owned();
+        if text.contains("Lbm(") && text.contains("dimension: Space") {
+            text = text.replace("spacing: \"1 mm\"", "spacing: \"2 mm\"");
+        }
         for begin in ["Grains(", "grains: "] {
             let mut from = 0;
             while let Some(found) = text[from..].find(begin) {
@@ -233,7 +236,7 @@ pub(super) fn case(bases: &[Base], number: u64) -> Case {
     let mut chance = Chance(number.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5eed);
     let base = &bases[chance.below(bases.len())];
     let mut text = base.text.clone();
-    let mut changes = 1 + chance.below(3);
+    let mut changes = [1, 1, 1, 1, 2, 2, 3][chance.below(7)];
     // Some scenes are hit hard.
     changes += if chance.is(5) { chance.below(20) } else { 0 };
     changes *= usize::from(!chance.is(8));
@@ -283,6 +286,7 @@ fn replace_value(text: &mut String, chance: &mut Chance) {
 fn number(old: &str, chance: &mut Chance) -> String {
     match (old.parse::<f64>(), chance.below(10)) {
         (Ok(value), 0..2) => format!("{:e}", value * 10.0_f64.powi(chance.below(13) as i32 - 6)),
+        (Ok(value), 6..8) => format!("{:e}", value * [0.5, 0.9, 1.1, 2.0, 3.0, 10.0][chance.below(6)]),
         (Ok(value), 2) => format!("{}", -value),
         (Ok(value), 3) => format!("{}", value + [1.0, -1.0, 0.5, 1e-9][chance.below(4)]),
         // A whole number stays one.
