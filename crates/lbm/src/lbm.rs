@@ -3,6 +3,7 @@
 use crate::boundary::{Beyond, Builder};
 use crate::collision::{Parameters, Parts, Physics, With};
 use crate::lattice::Lattice;
+use crate::links::Cuts;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of, cover};
 use crate::open::{dot, equilibrium, moments};
 use crate::populations::{Grid, Layout, Populations, Runs};
@@ -10,7 +11,7 @@ use crate::real::Real;
 use crate::rows::RowLinks;
 use crate::setup::{Setup, SetupError};
 use granular_core::solver::check_step;
-use granular_core::{Dim, Motion, StepError, Vector};
+use granular_core::{Dim, Linear, Motion, StepError, Vector};
 
 /// Largest population at rest, without its weight, that still means something: its density would
 /// be twice that at rest.
@@ -145,12 +146,19 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// Sets the body force per mass \[m/s^2\], from the next step on.
-    pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) {
+    ///
+    /// # Errors
+    /// When it is not finite; the one before stays.
+    pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) -> Result<(), SetupError> {
+        if !acceleration.is_finite() {
+            return Err(SetupError::new("acceleration", format!("{acceleration:?} m/s^2"), "finite numbers"));
+        }
         let Setup { spacing, time_step, .. } = self.setup;
         self.setup.acceleration = acceleration;
         self.physics.force = acceleration.padded().map(|a| a * time_step.powi(2) / spacing);
         self.parameters = self.physics.parameters::<L, T, Q>();
         self.step = step_function::<L, T, Q>(&self.physics);
+        Ok(())
     }
 
     fn apply_boundaries(&mut self) {
@@ -178,7 +186,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         while left > 0 {
             let (populations, bound) = (&mut self.populations, T::of(BEYOND));
             let (taken, is_beyond) = if is_paired && left > 1 && populations.layout == Layout::Natural {
-                (2, two(populations, &self.runs, &self.row_links, &self.parameters, bound))
+                self.row_links.take_dues(&self.beyond.obstacles);
+                let is_beyond = two(populations, &self.runs, &self.row_links, &self.parameters, bound);
+                self.row_links.hand_over_kept(&mut self.beyond.obstacles);
+                (2, is_beyond)
             } else {
                 (1, one(populations, &self.runs, &self.parameters, bound))
             };
@@ -251,7 +262,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         Some(Flow { pressure: excess / 3.0 * self.setup.density * speed * speed, velocity })
     }
 
-    /// Number of cells that an obstacle covers, by the number of the obstacle.
+    /// Number of cells that an obstacle covers, by the number of the obstacle; none for a number that no obstacle has.
     pub fn cells_in(&self, obstacle: usize) -> usize {
         self.cover.iter().filter(|number| **number as usize == obstacle + 1).count()
     }
@@ -262,16 +273,28 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// Force \[N, per metre of depth in the plane\] of the fluid on an obstacle in the last step, by the number of the obstacle.
+    ///
+    /// # Panics
+    /// When no obstacle has this number.
     pub fn force_on(&self, obstacle: usize) -> <L::Dim as Dim>::Vec {
         let scale = self.force_scale();
-        let force = self.beyond.obstacles[obstacle].force.map(|c| c * scale);
+        let force = self.loads_on(obstacle).force.map(|c| c * scale);
         Vector::from_slice(&force[..L::Dim::N]).expect("one component per axis")
     }
 
     /// Torque \[N m, per metre of depth in the plane\] about the centre of an obstacle, as [`Lbm::force_on`].
+    ///
+    /// # Panics
+    /// When no obstacle has this number.
     pub fn torque_on(&self, obstacle: usize) -> <L::Dim as Dim>::Spin {
         let scale = self.force_scale() * self.setup.spacing;
-        granular_core::Spin::of_components(self.beyond.obstacles[obstacle].torque.map(|c| c * scale))
+        granular_core::Spin::of_components(self.loads_on(obstacle).torque.map(|c| c * scale))
+    }
+
+    fn loads_on(&self, obstacle: usize) -> &Cuts<T> {
+        let count = self.beyond.obstacles.len();
+        assert!(obstacle < count, "there is no obstacle {obstacle} among {count}, counted from 0");
+        &self.beyond.obstacles[obstacle]
     }
 
     /// One lattice unit of force: density h^N h / dt^2.

@@ -60,6 +60,7 @@ mod kernel;
 mod lattice;
 mod lbm;
 mod links;
+mod mass;
 mod moving;
 mod obstacle;
 mod open;

@@ -241,6 +241,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             })
             .collect();
         to.put("force and torque on obstacles", &loads);
+        let kept: Vec<u64> = self.beyond.obstacles.iter().map(|body| body.kept as u64).collect();
+        to.put("mass kept by obstacles", &kept);
         let motions = || self.setup.obstacles.iter().map(|obstacle| obstacle.motion());
         to.put("positions of obstacles", &motions().map(|motion| motion.position).collect::<Vec<_>>());
         to.put("velocities of obstacles", &motions().map(|motion| motion.velocity).collect::<Vec<_>>());
@@ -260,6 +262,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;
+        let kept: Vec<u64> = from.array_of("mass kept by obstacles", self.beyond.obstacles.len())?;
         let are_finite = [
             ("acceleration", acceleration.is_finite()),
             ("force and torque on obstacles", loads.iter().flatten().all(|c| c.is_finite())),
@@ -268,14 +271,14 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             let found = "a number that is not finite".to_owned();
             return Err(SnapshotError::Damaged { place: format!("solver/{name}"), found });
         }
-        self.set_acceleration(acceleration);
+        self.set_acceleration(acceleration).expect("it is finite");
         let places: Vec<usize> = self.fluid().map(|(_, place)| place).collect();
         for (place, values) in places.into_iter().zip(populations.chunks_exact(Q)) {
             let values = std::array::from_fn(|i| values[i]);
             self.populations.set_entering::<L, Q>(place, values);
         }
-        for (body, [a, b, c, d, e, f]) in self.beyond.obstacles.iter_mut().zip(loads) {
-            (body.force, body.torque) = ([a, b, c], [d, e, f]);
+        for ((body, [a, b, c, d, e, f]), kept) in self.beyond.obstacles.iter_mut().zip(loads).zip(kept) {
+            (body.force, body.torque, body.kept) = ([a, b, c], [d, e, f], kept as i64);
         }
         self.steps = steps;
         Ok(())
