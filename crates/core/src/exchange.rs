@@ -55,6 +55,10 @@ pub trait Coupling<Slow, Fast>: Send + 'static {
     /// # Errors
     /// When the solvers do not fit one another.
     fn attach(&mut self, slow: &mut Slow, fast: &mut Fast) -> Result<(), CouplingError>;
+    /// Called with the length of the long step \[s\] before the first one, and again whenever it may have changed.
+    fn begin(&mut self, long_step: f64) {
+        let _ = long_step;
+    }
     /// Before the slow step.
     ///
     /// # Errors

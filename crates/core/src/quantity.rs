@@ -45,7 +45,8 @@ impl<D: Dim> Quantity for GrainMotion<D> {
 }
 
 /// Where the bodies in a fluid are \[m\] and how they move \[m/s, rad/s\], in the order of the bodies, in the frame of the
-/// scene. A fluid that takes it meets the bodies there from its next step on.
+/// scene. A fluid that takes it meets the bodies there in the whole of its next step: what is right to second order is the motion
+/// in the middle of that step.
 #[derive(Clone, Copy, Debug)]
 pub struct ObstacleMotion<D>(PhantomData<D>);
 

@@ -2,7 +2,7 @@
 
 use crate::lattice::{Lattice, opposite};
 use crate::links::{Copies, Cut, Cuts, Port};
-use crate::obstacle::{Cover, Domain, cell_index, cells_of};
+use crate::obstacle::{Cover, Domain, Range, cell_index, cells_of};
 use crate::open::{Open, dot};
 use crate::openings::open_faces;
 use crate::populations::Grid;
@@ -96,16 +96,29 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
 
     /// Links that obstacles cut.
     pub(crate) fn obstacles<T: Real>(&self) -> Vec<Cuts<T>> {
-        (0..self.setup.obstacles.len())
-            .map(|number| {
-                let cuts: Vec<Cut> = (0..self.images[number].len())
-                    .flat_map(|image| self.near(number, image).map(move |cell| (image, cell)))
-                    .flat_map(|(image, cell)| (1..Q).map(move |direction| (image, cell, direction)))
-                    .filter_map(|(image, cell, direction)| self.cut(cell, direction, number, image))
-                    .collect();
-                Cuts::new::<L, Q>(self.grid, &cuts)
-            })
-            .collect()
+        (0..self.setup.obstacles.len()).map(|number| self.cuts_of(number)).collect()
+    }
+
+    /// Links that one obstacle cuts.
+    pub(crate) fn cuts_of<T: Real>(&self, number: usize) -> Cuts<T> {
+        let cuts: Vec<Cut> = (0..self.images[number].len())
+            .flat_map(|image| self.near(number, image).map(move |cell| (image, cell)))
+            .flat_map(|(image, cell)| (1..Q).map(move |direction| (image, cell, direction)))
+            .filter_map(|(image, cell, direction)| self.cut(cell, direction, number, image))
+            .collect();
+        let mut cuts = Cuts::new::<L, Q>(self.grid, &cuts);
+        set_velocity::<L, T, Q>(&mut cuts, self.setup, number);
+        cuts
+    }
+
+    /// Whether links of an obstacle may reach cells of boxes, or see them behind their own.
+    pub(crate) fn comes_near(&self, number: usize, ranges: &[Range]) -> bool {
+        self.images[number].iter().any(|image| {
+            let [low, high] = self.domain.near(&self.setup.obstacles[number], *image, 2.0);
+            let overlaps =
+                |[from, to]: &Range| (0..3).all(|axis| low[axis] < to[axis] && from[axis] < high[axis]);
+            ranges.iter().any(overlaps)
+        })
     }
 
     /// Fluid cells from which links may reach an image of an obstacle.
@@ -252,7 +265,7 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
     fn cut(&self, cell: [usize; 3], direction: usize, number: usize, image: usize) -> Option<Cut> {
         let cell = cell.map(|x| x as i64);
         let (_, solid) = self.met(cell, direction).filter(|(found, _)| *found == number)?;
-        let (setup, obstacle, images) = (self.setup, &self.setup.obstacles[number], &self.images[number]);
+        let (obstacle, images) = (&self.setup.obstacles[number], &self.images[number]);
         let inside = self.domain.centre(solid.cell);
         // Images that overlap share the cells near them: the first one has the link.
         if images.iter().position(|image| obstacle.shape.contains(inside - *image)) != Some(image) {
@@ -263,19 +276,30 @@ impl<'a, L: Lattice<Q>, const Q: usize> Builder<'a, L, Q> {
         let Meeting { q, arm, in_mirror } =
             meeting(&*obstacle.shape, [outside, beside, inside - images[image]]);
         let towards = if in_mirror { mirrored::<L, Q>(direction, solid.mirror) } else { direction };
-        let wall = obstacle.velocity_at(arm).padded().map(|c| c / setup.lattice_speed());
         let behind = self.sent(cell, opposite(direction));
-        let motion = obstacle.wall.motion(q, behind.is_some());
         Some(Cut {
             port: Port { place: self.grid.place(cell), direction },
             behind,
             towards,
             weights: obstacle.wall.weights(q, behind.is_some()),
-            added: -6.0 * L::WEIGHTS[towards] * motion * dot(L::VELOCITIES[towards], wall),
-            arm: arm.padded().map(|c| c / setup.spacing),
-            velocity: wall,
+            motion: obstacle.wall.motion(q, behind.is_some()),
+            arm: arm.padded().map(|c| c / self.setup.spacing),
         })
     }
+}
+
+/// Lets the links of an obstacle move as the setup says.
+pub(crate) fn set_velocity<L: Lattice<Q>, T: Real, const Q: usize>(
+    cuts: &mut Cuts<T>,
+    setup: &Setup<L::Dim>,
+    number: usize,
+) {
+    let (obstacle, speed) = (&setup.obstacles[number], setup.lattice_speed());
+    cuts.set_velocity::<L, Q>(|arm| {
+        let arm = arm.map(|c| c * setup.spacing);
+        let arm = Vector::from_slice(&arm[..L::Dim::N]).expect("one component per axis");
+        obstacle.velocity_at(arm).padded().map(|c| c / speed)
+    });
 }
 
 /// Where a link meets a surface.

@@ -4,6 +4,7 @@ use crate::body_force::{self, BodyForce, Force, ForceField};
 use crate::boundary::{Beyond, Builder};
 use crate::collision::{Parameters, Parts, Physics, With};
 use crate::lattice::Lattice;
+use crate::links::Cuts;
 use crate::named::SetFace;
 use crate::obstacle::{Cover, Domain, cell_index, cells_of, cover};
 use crate::open::{dot, equilibrium, moments};
@@ -12,7 +13,7 @@ use crate::real::Real;
 use crate::rows::RowLinks;
 use crate::setup::{Setup, SetupError};
 use granular_core::solver::check_step;
-use granular_core::{Dim, Motion, StepError, Vector};
+use granular_core::{Dim, Linear, Motion, StepError, Vector};
 
 /// Largest population at rest, without its weight, that still means something: its density would
 /// be twice that at rest.
@@ -112,7 +113,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             set_faces: Vec::new(),
             setup,
         };
-        lbm.set_acceleration(lbm.setup.acceleration);
+        lbm.set_acceleration(lbm.setup.acceleration)?;
         lbm.field.fill(&lbm.setup, 0.0);
         if lbm.is_pairable() {
             lbm.sort_links();
@@ -170,11 +171,18 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// Sets the body force per mass \[m/s^2\], from the next step on.
-    pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) {
+    ///
+    /// # Errors
+    /// When it is not finite; the one before stays.
+    pub fn set_acceleration(&mut self, acceleration: <L::Dim as Dim>::Vec) -> Result<(), SetupError> {
+        if !acceleration.is_finite() {
+            return Err(SetupError::new("acceleration", format!("{acceleration:?} m/s^2"), "finite numbers"));
+        }
         self.setup.acceleration = acceleration;
         self.physics = self.physics_at(self.steps);
         self.parameters = self.physics.parameters::<L, T, Q>();
         self.step = step_function::<L, T, Q>(&self.physics);
+        Ok(())
     }
 
     /// What a collision needs after so many steps.
@@ -238,8 +246,12 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                     None => self.parameters,
                 };
                 let parameters = [self.parameters, second];
+                self.row_links.take_dues(&self.beyond.obstacles);
                 let populations = &mut self.populations;
-                (2, two(populations, &self.runs, &self.row_links, &self.field, &parameters, bound))
+                let is_beyond =
+                    two(populations, &self.runs, &self.row_links, &self.field, &parameters, bound);
+                self.row_links.hand_over_kept(&mut self.beyond.obstacles);
+                (2, is_beyond)
             } else {
                 let populations = &mut self.populations;
                 (1, one(populations, &self.runs, &self.field, &self.parameters, bound))
@@ -322,7 +334,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         Some(Flow { pressure: excess / 3.0 * self.setup.density * speed * speed, velocity })
     }
 
-    /// Number of cells that an obstacle covers, by the number of the obstacle.
+    /// Number of cells that an obstacle covers, by the number of the obstacle; none for a number that no obstacle has.
     pub fn cells_in(&self, obstacle: usize) -> usize {
         self.cover.iter().filter(|number| **number as usize == obstacle + 1).count()
     }
@@ -333,16 +345,28 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
     }
 
     /// Force \[N, per metre of depth in the plane\] of the fluid on an obstacle in the last step, by the number of the obstacle.
+    ///
+    /// # Panics
+    /// When no obstacle has this number.
     pub fn force_on(&self, obstacle: usize) -> <L::Dim as Dim>::Vec {
         let scale = self.force_scale();
-        let force = self.beyond.obstacles[obstacle].force.map(|c| c * scale);
+        let force = self.loads_on(obstacle).force.map(|c| c * scale);
         Vector::from_slice(&force[..L::Dim::N]).expect("one component per axis")
     }
 
     /// Torque \[N m, per metre of depth in the plane\] about the centre of an obstacle, as [`Lbm::force_on`].
+    ///
+    /// # Panics
+    /// When no obstacle has this number.
     pub fn torque_on(&self, obstacle: usize) -> <L::Dim as Dim>::Spin {
         let scale = self.force_scale() * self.setup.spacing;
-        granular_core::Spin::of_components(self.beyond.obstacles[obstacle].torque.map(|c| c * scale))
+        granular_core::Spin::of_components(self.loads_on(obstacle).torque.map(|c| c * scale))
+    }
+
+    fn loads_on(&self, obstacle: usize) -> &Cuts<T> {
+        let count = self.beyond.obstacles.len();
+        assert!(obstacle < count, "there is no obstacle {obstacle} among {count}, counted from 0");
+        &self.beyond.obstacles[obstacle]
     }
 
     /// One lattice unit of force: density h^N h / dt^2.

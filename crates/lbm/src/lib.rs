@@ -66,6 +66,7 @@ mod kernel;
 mod lattice;
 mod lbm;
 mod links;
+mod mass;
 mod moving;
 mod named;
 mod obstacle;

@@ -4,6 +4,8 @@
 //! the same step. No link writes what another reads, so their order does not matter.
 
 use crate::lattice::{Lattice, opposite};
+use crate::mass::{counted, due};
+use crate::open::dot;
 use crate::populations::{Grid, Layout, Populations};
 use crate::real::Real;
 use crate::wall_faces::SlipLink;
@@ -78,10 +80,11 @@ impl<T: Real> Copies<T> {
     }
 }
 
-/// How a curved wall is met by a link that it cuts at the fraction `q` of its length.
+/// How a curved wall is met by a link that it cuts at the fraction `q` of its length. No scheme lets mass through: what
+/// interpolation would lose or gain in a step, each obstacle gives back over all its links in the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WallScheme {
-    /// Half-way, wherever the wall is; keeps mass exactly.
+    /// Half-way, wherever the wall is.
     HalfWay,
     /// Linear interpolation by cases \[Bouzidi2001\].
     #[default]
@@ -134,18 +137,20 @@ pub(crate) struct Cut {
     pub(crate) towards: usize,
     /// Weights after [`WallScheme::weights`].
     pub(crate) weights: [f64; 3],
-    /// What the motion of the wall adds.
-    pub(crate) added: f64,
+    /// Factor of the wall's motion after [`WallScheme::motion`].
+    pub(crate) motion: f64,
     /// From the centre of the obstacle to the wall \[cells\].
     pub(crate) arm: [f64; 3],
-    /// Velocity of the wall \[cells per step\].
-    pub(crate) velocity: [f64; 3],
 }
 
 /// All links of one obstacle.
 #[derive(Clone, Debug)]
 pub(crate) struct Cuts<T> {
     pub(crate) links: Vec<CutLink<T>>,
+    /// Sum of the lattice weights of all links.
+    weight: f64,
+    /// Mass that came off the fluid and is not given back yet, see [`crate::mass`].
+    pub(crate) kept: i64,
     /// Force and torque of the fluid on the obstacle in the last step, in lattice units.
     pub(crate) force: [f64; 3],
     pub(crate) torque: [f64; 3],
@@ -157,7 +162,11 @@ pub(crate) struct CutLink<T> {
     pub(crate) from: [Both; 3],
     pub(crate) weights: [T; 3],
     pub(crate) added: T,
+    /// Weight of its direction on the lattice.
+    pub(crate) share: T,
     direction: u8,
+    /// What a velocity of the wall along the link adds, by its component.
+    pull: f64,
     arm: [f64; 3],
     velocity: [f64; 3],
 }
@@ -169,6 +178,7 @@ pub(crate) fn entering_cut<T: Real>([near, behind, away]: [T; 3], [a, b, c]: [T;
 }
 
 impl<T: Real> Cuts<T> {
+    /// Links of a wall at rest.
     pub(crate) fn new<L: Lattice<Q>, const Q: usize>(grid: &Grid, cuts: &[Cut]) -> Self {
         let link = |cut: &Cut| {
             let Port { place, direction } = cut.port;
@@ -181,13 +191,35 @@ impl<T: Real> Cuts<T> {
                 to: entering::<L, Q>(grid, Port { place, direction: back }),
                 from: [near, behind, away],
                 weights: cut.weights.map(T::of),
-                added: T::of(cut.added),
+                added: T::of(0.0),
+                share: T::of(L::WEIGHTS[direction]),
                 direction: cut.towards as u8,
+                pull: -6.0 * L::WEIGHTS[cut.towards] * cut.motion,
                 arm: cut.arm,
-                velocity: cut.velocity,
+                velocity: [0.0; 3],
             }
         };
-        Self { links: cuts.iter().map(link).collect(), force: [0.0; 3], torque: [0.0; 3] }
+        // Weights are whole multiples of 1/36: their sum does not depend on the order.
+        let weight =
+            cuts.iter().map(|cut| (36.0 * L::WEIGHTS[cut.port.direction]).round()).sum::<f64>() / 36.0;
+        let links = cuts.iter().map(link).collect();
+        Self { links, weight, kept: 0, force: [0.0; 3], torque: [0.0; 3] }
+    }
+
+    /// Takes the velocity \[cells per step\] of the wall at the end of each arm \[cells\].
+    pub(crate) fn set_velocity<L: Lattice<Q>, const Q: usize>(
+        &mut self,
+        velocity: impl Fn([f64; 3]) -> [f64; 3],
+    ) {
+        for link in &mut self.links {
+            link.velocity = velocity(link.arm);
+            link.added = T::of(link.pull * dot(L::VELOCITIES[link.direction as usize], link.velocity));
+        }
+    }
+
+    /// The density that all links give back in the next step.
+    pub(crate) fn due(&self) -> T {
+        due(self.kept, self.weight)
     }
 
     /// Applies all links, and adds up force and torque in their order. Momentum is exchanged in the
@@ -196,11 +228,13 @@ impl<T: Real> Cuts<T> {
         let at = populations.layout as usize;
         let values = &mut populations.values[..];
         let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
+        let due = self.due();
         for link in &self.links {
             let left = link.from.map(|from| values[from[at] as usize]);
-            let (near, entering) = (left[0], entering_cut(left, link.weights, link.added));
+            let entering = entering_cut(left, link.weights, link.added + link.share * due);
             values[link.to[at] as usize] = entering;
-            let (out, back) = (near.double(), entering.double());
+            let (out, back) = (left[0].double(), entering.double());
+            self.kept = self.kept.wrapping_add(counted(out - back));
             let velocity = L::VELOCITIES[link.direction as usize].map(f64::from);
             let push: [f64; 3] = std::array::from_fn(|axis| {
                 out * (velocity[axis] - link.velocity[axis]) + back * (velocity[axis] + link.velocity[axis])

@@ -1,12 +1,14 @@
 //! Obstacles that move: cells are covered and uncovered, and links found again.
 //!
 //! An uncovered cell gets the equilibrium at the mean density of the fluid cells around it and the velocity of the body
-//! that left it, and their mean deviation from equilibrium \[Caiazzo2008\]. What a body covers is lost, what it
-//! uncovers is new: mass is kept on average only.
+//! that left it, and their mean deviation from equilibrium \[Caiazzo2008\]. Mass at the density at rest comes and goes with the
+//! cells that a body covers, whose number is the same on average. What is over it the body gives back and takes ([`crate::mass`]):
+//! the mean density stays.
 
-use crate::boundary::{Builder, Seen, mirrored};
+use crate::boundary::{Builder, Seen, mirrored, set_velocity};
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
+use crate::mass::counted;
 use crate::obstacle::{Domain, Range, cell_index, cells_of};
 use crate::open::equilibrium;
 use crate::openings::open_faces;
@@ -22,6 +24,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<ObstacleMotion<L::Dim>> fo
     }
 }
 
+/// A motion holds for the whole of each step from the next one on, until another one is given: that of the middle of the step
+/// is right to second order. Giving another velocity or spin at the same place costs no search for links.
 impl<L: Lattice<Q>, const Q: usize, T: Real> Accepts<ObstacleMotion<L::Dim>> for Lbm<L, Q, T> {
     fn view_mut(&mut self) -> &mut [Motion<L::Dim>] {
         self.may_have_moved = true;
@@ -29,9 +33,19 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Accepts<ObstacleMotion<L::Dim>> for
     }
 }
 
+/// What changed of the motion of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Change {
+    None,
+    Velocity,
+    Place,
+}
+
 /// A cell that a body left.
 pub(crate) struct Uncovered<D: Dim> {
     cell: [usize; 3],
+    /// Number of the body.
+    body: usize,
     /// Velocity of the body there \[m/s\].
     velocity: D::Vec,
 }
@@ -76,27 +90,30 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         Ok(())
     }
 
-    /// Puts the obstacles where they are now and finds cells, runs and links again. Returns the cells that they left.
+    /// Puts the obstacles where they are now and finds cells, runs and links again where bodies came from and went. A body that
+    /// stays in place and moves on otherwise keeps its links. Returns the cells that bodies left.
     pub(crate) fn place_obstacles(&mut self, motions: Vec<Motion<L::Dim>>) -> Vec<Uncovered<L::Dim>> {
         let domain = Domain::of(&self.setup);
         let mut ranges: Vec<Range> = Vec::new();
+        let mut changes = vec![Change::None; motions.len()];
         for (k, motion) in motions.iter().enumerate() {
-            if *motion == self.setup.obstacles[k].motion() {
-                continue;
-            }
-            let mut before = self.setup.obstacles[k].clone();
-            self.setup.obstacles[k].set_motion(*motion, &domain);
-            for obstacle in [&mut before, &mut self.setup.obstacles[k]] {
-                let images = domain.images(obstacle, 0.0);
-                ranges.extend(images.into_iter().map(|image| domain.near(obstacle, image, 0.0)));
+            let obstacle = &mut self.setup.obstacles[k];
+            let before = (obstacle.displacement, obstacle.velocity, obstacle.spin);
+            obstacle.set_motion(*motion, &domain);
+            if obstacle.displacement != before.0 {
+                changes[k] = Change::Place;
+                for displacement in [before.0, obstacle.displacement] {
+                    obstacle.displacement = displacement;
+                    let images = domain.images(obstacle, 0.0);
+                    ranges.extend(images.into_iter().map(|image| domain.near(obstacle, image, 0.0)));
+                }
+            } else if (obstacle.velocity, obstacle.spin) != (before.1, before.2) {
+                changes[k] = Change::Velocity;
             }
         }
         self.motions = motions;
-        if ranges.is_empty() {
-            return Vec::new();
-        }
-        let uncovered = self.cover_again(&domain, &ranges);
-        self.link_again(ranges.iter().any(|range| domain.is_at_face(*range)));
+        let uncovered = if ranges.is_empty() { Vec::new() } else { self.cover_again(&domain, &ranges) };
+        self.link_again(&changes, &ranges, &domain);
         uncovered
     }
 
@@ -113,12 +130,17 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             let before = std::mem::replace(&mut self.cover[cell_index(self.setup.cells, cell)], number);
             match (before, number) {
                 (0, 0) => {}
-                (0, _) => self.fluid_cells -= 1,
+                (0, _) => {
+                    self.fluid_cells -= 1;
+                    let place = self.populations.grid.place(cell.map(|x| x as i64));
+                    self.keep(number as usize - 1, self.moments(place).0);
+                }
                 (_, 0) => {
                     self.fluid_cells += 1;
-                    let body = &self.setup.obstacles[before as usize - 1];
+                    let number = before as usize - 1;
+                    let body = &self.setup.obstacles[number];
                     let arm = centre - domain.nearest_image(body, centre);
-                    uncovered.push(Uncovered { cell, velocity: body.velocity_at(arm) });
+                    uncovered.push(Uncovered { cell, body: number, velocity: body.velocity_at(arm) });
                 }
                 _ => {}
             }
@@ -131,19 +153,31 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         uncovered
     }
 
-    fn link_again(&mut self, faces_too: bool) {
+    fn link_again(&mut self, changes: &[Change], ranges: &[Range], domain: &Domain<L::Dim>) {
         let builder = Builder::<L, Q>::new(&self.setup, &self.populations.grid, &self.cover);
-        let mut obstacles = builder.obstacles();
-        for (fresh, before) in obstacles.iter_mut().zip(&self.beyond.obstacles) {
-            (fresh.force, fresh.torque) = (before.force, before.torque);
+        for (k, change) in changes.iter().enumerate() {
+            let cuts = &mut self.beyond.obstacles[k];
+            if *change == Change::Place || builder.comes_near(k, ranges) {
+                let fresh = builder.cuts_of(k);
+                let before = std::mem::replace(cuts, fresh);
+                (cuts.force, cuts.torque, cuts.kept) = (before.force, before.torque, before.kept);
+            } else if *change == Change::Velocity {
+                set_velocity::<L, T, Q>(cuts, &self.setup, k);
+            }
         }
-        if faces_too {
+        // A wall moves as a body does that touches it.
+        let is_at_wall = |(body, change): (&crate::Obstacle<L::Dim>, &Change)| {
+            let is_at_face = |image: &_| domain.is_at_face(domain.near(body, *image, 0.0));
+            *change == Change::Velocity && domain.images(body, 0.0).iter().any(is_at_face)
+        };
+        if ranges.iter().any(|range| domain.is_at_face(*range)) {
             self.beyond.copies = builder.copies();
             let seen = self.beyond.open.seen();
             self.beyond.open = open_faces::<L, Q>(&self.setup, &self.populations.grid, &self.cover);
             self.beyond.open.set_seen(&seen);
+        } else if self.setup.obstacles.iter().zip(changes).any(is_at_wall) {
+            self.beyond.copies = builder.copies();
         }
-        self.beyond.obstacles = obstacles;
     }
 
     fn refill(&mut self, uncovered: &[Uncovered<L::Dim>]) {
@@ -151,7 +185,14 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         for (fresh, values) in uncovered.iter().zip(filled) {
             let place = self.populations.grid.place(fresh.cell.map(|x| x as i64));
             self.populations.set_entering::<L, Q>(place, values.map(T::of));
+            self.keep(fresh.body, -self.moments(place).0);
         }
+    }
+
+    /// Leaves mass \[cells at the density at rest\] with an obstacle.
+    fn keep(&mut self, obstacle: usize, mass: f64) {
+        let kept = &mut self.beyond.obstacles[obstacle].kept;
+        *kept = kept.wrapping_add(counted(mass));
     }
 
     /// What enters a cell that a body left.

@@ -50,6 +50,28 @@ impl<D: Dim> Obstacle<D> {
         }
     }
 
+    /// Whether shape, motion and reference make sense.
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        let of = |what: &str| format!("{what} of obstacle `{}`", self.name);
+        self.shape.check().map_err(|error| SetupError { what: of(&error.what), ..error })?;
+        let motion = [
+            ("displacement", self.displacement.is_finite(), format!("{:?} m", self.displacement)),
+            ("velocity", self.velocity.is_finite(), format!("{:?} m/s", self.velocity)),
+            ("spin", self.spin.is_finite(), format!("{:?} 1/s", self.spin)),
+        ];
+        if let Some((what, _, value)) = motion.into_iter().find(|(_, is_finite, _)| !is_finite) {
+            return Err(SetupError::new(of(what), value, "finite numbers"));
+        }
+        match self.reference {
+            Some(Reference { speed, length })
+                if !(speed > 0.0 && length > 0.0 && speed.is_finite() && length.is_finite()) =>
+            {
+                Err(SetupError::new(of("reference"), format!("{speed} m/s, {length} m"), "positive numbers"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Where it is and how it moves.
     pub fn motion(&self) -> Motion<D> {
         let position = self.shape.centre() + self.displacement;

@@ -1,6 +1,7 @@
 //! Links sorted by rows of the plane, for two steps in one pass: see [`crate::pair`].
 
 use crate::links::{Both, Copies, CutLink, Cuts, entering_cut};
+use crate::mass::{Kept, counted};
 use crate::pair::Window;
 use crate::populations::{Grid, Layout};
 use crate::real::Real;
@@ -72,15 +73,20 @@ struct RowCut<T> {
     from: [Spot; 3],
     weights: [T; 3],
     added: T,
+    share: T,
+    obstacle: u32,
 }
 
 /// All links in the plane by rows, as they are after the first of two steps taken together. Without what forces need:
 /// those are of the second step.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct RowLinks<T> {
     copies: ByRow<RowCopy<T>>,
     cuts: ByRow<RowCut<T>>,
     slips: ByRow<RowSlip<T>>,
+    /// The density that each obstacle gives back, and the mass that it keeps.
+    dues: Vec<T>,
+    kept: Kept,
 }
 
 impl<T: Real> RowLinks<T> {
@@ -103,11 +109,27 @@ impl<T: Real> RowLinks<T> {
             }
         });
         self.cuts.fill(grid.cells[1], |take| {
-            for cut in obstacles.iter().flat_map(|obstacle| &obstacle.links) {
-                let &CutLink { to, from, weights, added, .. } = cut;
-                take(row(to), RowCut { to: spot(to), from: from.map(spot), weights, added });
+            for (obstacle, cuts) in (0..).zip(obstacles) {
+                for &CutLink { to, from, weights, added, share, .. } in &cuts.links {
+                    let (to, from) = ((row(to), spot(to)), from.map(spot));
+                    take(to.0, RowCut { to: to.1, from, weights, added, share, obstacle });
+                }
             }
         });
+    }
+
+    /// Takes what obstacles give back in the next step.
+    pub(crate) fn take_dues(&mut self, obstacles: &[Cuts<T>]) {
+        self.dues.clear();
+        self.dues.extend(obstacles.iter().map(Cuts::due));
+        self.kept.reset(obstacles.len());
+    }
+
+    /// Hands over what obstacles kept in that step.
+    pub(crate) fn hand_over_kept(&self, obstacles: &mut [Cuts<T>]) {
+        for (number, obstacle) in obstacles.iter_mut().enumerate() {
+            obstacle.kept = obstacle.kept.wrapping_add(self.kept.of(number));
+        }
     }
 
     /// Applies the links of the cells in a row.
@@ -119,13 +141,21 @@ impl<T: Real> RowLinks<T> {
             let left = link.from.map(|from| window.get(from));
             window.set(link.to, entering_slip(left, link.shares, link.added));
         }
+        let mut tally = self.kept.tally();
         for link in self.cuts.of_row(row) {
-            window
-                .set(link.to, entering_cut(link.from.map(|from| window.get(from)), link.weights, link.added));
+            let left = link.from.map(|from| window.get(from));
+            let added = link.added + link.share * self.dues[link.obstacle as usize];
+            let entering = entering_cut(left, link.weights, added);
+            window.set(link.to, entering);
+            tally.add(link.obstacle as usize, counted(left[0].double() - entering.double()));
         }
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.copies.bytes() + self.cuts.bytes() + self.slips.bytes()
+        self.copies.bytes()
+            + self.cuts.bytes()
+            + self.slips.bytes()
+            + self.kept.bytes()
+            + size_of::<T>() * self.dues.capacity()
     }
 }

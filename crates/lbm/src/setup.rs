@@ -7,6 +7,7 @@ use crate::obstacle::Obstacle;
 use crate::obstacle::{Domain, cells_of};
 use crate::open::OpenScheme;
 use granular_core::{Dim, Linear};
+use std::collections::HashSet;
 use std::fmt;
 use std::sync::Arc;
 
@@ -256,8 +257,29 @@ impl<D: Dim> Setup<D> {
         if !self.acceleration.is_finite() || !self.origin.is_finite() {
             return Err(SetupError::new("acceleration or origin", "not finite".to_owned(), "finite numbers"));
         }
+        if !(self.expected_speed >= 0.0 && self.expected_speed.is_finite()) {
+            let value = format!("{} m/s", self.expected_speed);
+            return Err(SetupError::new("expected speed", value, "zero or more"));
+        }
         self.check_open_faces()?;
+        self.check_named()?;
         self.check_rates()
+    }
+
+    /// Obstacles and gauges, and their names.
+    fn check_named(&self) -> Result<(), SetupError> {
+        self.obstacles.iter().try_for_each(Obstacle::check)?;
+        if let Some(gauge) = self.gauges.iter().find(|gauge| !gauge.place.is_finite()) {
+            let value = format!("{:?}", gauge.place);
+            return Err(SetupError::new(format!("place of gauge `{}`", gauge.name), value, "finite numbers"));
+        }
+        let obstacles = self.obstacles.iter().map(|obstacle| ("name of an obstacle", &obstacle.name));
+        let gauges = self.gauges.iter().map(|gauge| ("name of a gauge", &gauge.name));
+        let mut names = HashSet::new();
+        match obstacles.chain(gauges).find(|named| !names.insert(*named)) {
+            Some((what, name)) => Err(SetupError::new(what, format!("`{name}` again"), "a name of its own")),
+            None => Ok(()),
+        }
     }
 
     fn check_faces(&self, axis: usize) -> Result<(), SetupError> {

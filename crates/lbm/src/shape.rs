@@ -1,5 +1,6 @@
 //! Shapes of obstacles.
 
+use crate::setup::SetupError;
 use granular_core::{Dim, Linear, Vector};
 
 /// A solid body.
@@ -17,6 +18,18 @@ pub trait Shape<D: Dim>: Send + Sync {
     fn reach(&self) -> f64 {
         let (low, high) = self.bounds();
         0.5 * (high - low).length()
+    }
+    /// Whether its numbers make sense.
+    ///
+    /// # Errors
+    /// When they do not; what is wrong is named. By default when the box around it has no inside, or its centre is not finite.
+    fn check(&self) -> Result<(), SetupError> {
+        let (low, high) = self.bounds();
+        if (0..D::N).all(|axis| low.component(axis) < high.component(axis)) && self.centre().is_finite() {
+            return Ok(());
+        }
+        let value = format!("from {low:?} to {high:?}, about {:?}", self.centre());
+        Err(SetupError::new("extent", value, "a lowest corner below the highest one, and a finite centre"))
     }
     /// Share of the way from `outside` to `inside` \[m\] at which the surface is met, in (0, 1\].
     fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
@@ -43,6 +56,16 @@ pub struct Ball<D: Dim> {
 }
 
 impl<D: Dim> Shape<D> for Ball<D> {
+    fn check(&self) -> Result<(), SetupError> {
+        if !(self.radius > 0.0 && self.radius.is_finite()) {
+            return Err(SetupError::new("radius", format!("{} m", self.radius), "a positive number"));
+        }
+        if !self.centre.is_finite() {
+            return Err(SetupError::new("centre", format!("{:?} m", self.centre), "finite numbers"));
+        }
+        Ok(())
+    }
+
     fn contains(&self, point: D::Vec) -> bool {
         (point - self.centre).length_squared() <= self.radius * self.radius
     }
@@ -110,6 +133,17 @@ pub struct Polygon {
 const ENDLESS: f64 = 1e9;
 
 impl<D: Dim> Shape<D> for Polygon {
+    fn check(&self) -> Result<(), SetupError> {
+        if self.corners.len() < 3 {
+            let value = format!("{} corners", self.corners.len());
+            return Err(SetupError::new("polygon", value, "three corners or more"));
+        }
+        match self.corners.iter().find(|corner| !corner.is_finite()) {
+            Some(corner) => Err(SetupError::new("corner", format!("{corner:?} m"), "finite numbers")),
+            None => Ok(()),
+        }
+    }
+
     fn contains(&self, point: D::Vec) -> bool {
         let [x, y, _] = point.padded();
         let ends = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
@@ -139,6 +173,15 @@ pub struct Extruded<S> {
 }
 
 impl<S: Shape<granular_core::D2>> Shape<granular_core::D3> for Extruded<S> {
+    fn check(&self) -> Result<(), SetupError> {
+        self.shape.check()?;
+        if self.from < self.to && self.from.is_finite() && self.to.is_finite() {
+            return Ok(());
+        }
+        let value = format!("from z = {} to {} m", self.from, self.to);
+        Err(SetupError::new("extent", value, "a lowest z below the highest one, both finite"))
+    }
+
     fn contains(&self, point: granular_core::glam::DVec3) -> bool {
         self.from <= point.z && point.z <= self.to && self.shape.contains(point.truncate())
     }

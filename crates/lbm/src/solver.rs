@@ -236,6 +236,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             })
             .collect();
         to.put("force and torque on obstacles", &loads);
+        let kept: Vec<u64> = self.beyond.obstacles.iter().map(|body| body.kept as u64).collect();
+        to.put("mass kept by obstacles", &kept);
         let motions = || self.setup.obstacles.iter().map(|obstacle| obstacle.motion());
         to.put("positions of obstacles", &motions().map(|motion| motion.position).collect::<Vec<_>>());
         to.put("velocities of obstacles", &motions().map(|motion| motion.velocity).collect::<Vec<_>>());
@@ -264,6 +266,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         let absorbing = self.beyond.open.seen().len();
         let seen: Vec<[f64; 2]> =
             if absorbing > 0 { from.array_of("what absorbing faces saw", absorbing)? } else { Vec::new() };
+        let kept: Vec<u64> = from.array_of("mass kept by obstacles", self.beyond.obstacles.len())?;
         let are_finite = [
             ("what absorbing faces saw", seen.iter().flatten().all(|c| c.is_finite())),
             ("acceleration", acceleration.is_finite()),
@@ -274,15 +277,15 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
             return Err(SnapshotError::Damaged { place: format!("solver/{name}"), found });
         }
         self.steps = steps;
-        self.set_acceleration(acceleration);
+        self.set_acceleration(acceleration).expect("it is finite");
         self.follow_body_force();
         let places: Vec<usize> = self.fluid().map(|(_, place)| place).collect();
         for (place, values) in places.into_iter().zip(populations.chunks_exact(Q)) {
             let values = std::array::from_fn(|i| values[i]);
             self.populations.set_entering::<L, Q>(place, values);
         }
-        for (body, [a, b, c, d, e, f]) in self.beyond.obstacles.iter_mut().zip(loads) {
-            (body.force, body.torque) = ([a, b, c], [d, e, f]);
+        for ((body, [a, b, c, d, e, f]), kept) in self.beyond.obstacles.iter_mut().zip(loads).zip(kept) {
+            (body.force, body.torque, body.kept) = ([a, b, c], [d, e, f], kept as i64);
         }
         self.beyond.open.set_seen(&seen);
         Ok(())

@@ -108,6 +108,7 @@ impl Node {
 /// A coupling whose two solvers are known by their places.
 trait Edge: Send {
     fn law(&self) -> &'static str;
+    fn begin(&mut self, long_step: f64);
     fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
     fn backward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
     fn limits(&self, nodes: &[Node], report: &mut Limits);
@@ -144,6 +145,10 @@ impl<Slow: Solver, Fast: Solver, Law> Typed<Slow, Fast, Law> {
 impl<Slow: Solver, Fast: Solver, Law: Coupling<Slow, Fast>> Edge for Typed<Slow, Fast, Law> {
     fn law(&self) -> &'static str {
         self.law.name()
+    }
+
+    fn begin(&mut self, long_step: f64) {
+        self.law.begin(long_step);
     }
 
     fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError> {
@@ -204,6 +209,7 @@ impl Graph {
 
     /// Divides a long step \[s\] among the solvers. One alone takes it whole.
     pub(super) fn share(&mut self, long: f64) -> Result<(), StepError> {
+        self.edges.iter_mut().for_each(|edge| edge.begin(long));
         match &mut self.nodes[..] {
             [alone] => {
                 (alone.substeps, alone.dt) = (1, long);

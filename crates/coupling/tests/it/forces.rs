@@ -102,3 +102,36 @@ fn an_oscillating_sphere_feels_the_force_of_stokes() {
     assert!((drag_found / drag - 1.0).abs() < 0.05, "{drag_found} against {drag}");
     assert!((mass_found / mass - 1.0).abs() < 0.05, "{mass_found} against {mass}");
 }
+
+/// An obstacle on a path acts with the place and velocity of the middle of the step, to second order.
+#[test]
+fn an_obstacle_moves_as_its_body_does_in_the_middle_of_the_step() {
+    let largest = |period: f64| {
+        let mut setup = Setup::new([20, 20, 1], 1e-3, 1e-6, 0.8);
+        let dt = setup.time_step;
+        let (place, amplitude) = (DVec2::splat(0.0103), DVec2::new(2e-3, 1e-3));
+        let path = Path::Oscillation { amplitude, frequency: 1.0 / (period * dt), phase: 0.4 };
+        let body = Body::<granular_core::D2>::new(place, 4e-3, path);
+        setup.obstacles.push(Obstacle::new("disk", Ball { centre: place, radius: 4e-3 }));
+        let mut simulation = Simulation::named("fluid", Box::new(granular_lbm::Lbm2::new(setup).unwrap()));
+        let fluid = simulation.find::<granular_lbm::Lbm2>("fluid").unwrap();
+        let bodies = simulation.add("bodies", PrescribedMotion::new(vec![body]).unwrap()).unwrap();
+        simulation.couple(fluid, bodies, CarriedObstacles::all()).unwrap();
+        simulation.begin_segment(dt).unwrap();
+        let off = |step: u32| {
+            simulation.advance(1).unwrap();
+            let found = simulation.get(fluid).setup().obstacles[0].motion();
+            let expected = body.motion((f64::from(step) + 0.5) * dt);
+            // The first steps have no steps before them.
+            let counts = if step < 3 { 0.0 } else { 1.0 };
+            let velocity = (found.velocity - expected.velocity).length() / body.fastest();
+            counts * velocity.max((found.position - expected.position).length() / amplitude.length())
+        };
+        (0..period as u32).map(off).fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [100.0, 200.0].map(largest);
+    // The velocity of the middle is off by up to 7/8 of its second derivative times the square of the step.
+    let allowed = 0.9 * (TAU / 100.0).powi(2);
+    println!("off by {coarse:.2e} and {fine:.2e}, {allowed:.2e} is allowed");
+    assert!(coarse < allowed && coarse > 3.5 * fine, "{coarse} {fine}");
+}

@@ -184,5 +184,6 @@ pub(super) fn apply(action: &Action, solver: &mut dyn Any) {
 }
 
 fn set_acceleration<L: Lattice<Q>, T: Real, const Q: usize>(lbm: &mut Lbm<L, Q, T>, values: &[f64]) {
-    lbm.set_acceleration(Vector::from_slice(values).expect("the number of axes was checked at build"));
+    let acceleration = Vector::from_slice(values).expect("the number of axes was checked at build");
+    lbm.set_acceleration(acceleration).expect("numbers of a scene are finite");
 }

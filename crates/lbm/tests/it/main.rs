@@ -10,6 +10,8 @@ mod contract;
 mod edges;
 mod lattices;
 mod limits;
+mod mass;
+mod obstacles;
 mod open;
 mod pairs;
 mod probes;

@@ -23,7 +23,7 @@ fn scene(rows: usize, faces: usize, wall: WallScheme, body_at: f64) -> Setup<gra
     setup.acceleration = DVec2::new(1e-4, -2e-4);
     for (at, radius) in [(body_at, 0.0042), (body_at + 0.37, 0.0031)] {
         let centre = DVec2::new(0.033 * (0.3 + at).fract(), rows as f64 * 1e-3 * at.fract());
-        let mut body = Obstacle::new("disk", Ball { centre, radius });
+        let mut body = Obstacle::new(format!("disk of {radius}"), Ball { centre, radius });
         (body.wall, body.velocity, body.spin) = (wall, DVec2::new(0.0004, -0.0007), 0.3);
         setup.obstacles.push(body);
     }

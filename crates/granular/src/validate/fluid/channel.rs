@@ -136,7 +136,8 @@ pub(crate) fn womersley(rows: &mut Rows, _: Effort) -> Result<(), Failure> {
     let mut largest = 0.0_f64;
     for step in 0..=cycles * period {
         let time = step as f64 * dt;
-        lbm.set_acceleration(DVec2::new(ACCELERATION * (omega * time).cos(), 0.0));
+        let acceleration = DVec2::new(ACCELERATION * (omega * time).cos(), 0.0);
+        lbm.set_acceleration(acceleration).expect("it is finite");
         if step >= (cycles - 1) * period && step % (period / 20) == 0 {
             for k in 0..20 {
                 let speed = lbm.flow([1, k, 0]).map_or(f64::NAN, |flow| flow.velocity.x);
