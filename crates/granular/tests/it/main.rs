@@ -14,6 +14,7 @@ mod command_interrupt;
 mod command_push;
 mod command_sample;
 mod command_snapshots;
+mod command_stir;
 mod command_sweep;
 mod scenes;
 mod stability;
