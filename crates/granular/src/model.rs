@@ -75,6 +75,10 @@ pub enum Action {
     Friction(MaterialId, f64),
     /// Gravity \[m/s^2\].
     Gravity(Vec<f64>),
+    /// Velocity of a face of the fluid by its name \[m/s\].
+    FaceVelocity(String, Vec<f64>),
+    /// Spin of an obstacle in the fluid by its name \[1/s\], about x, y and z.
+    ObstacleSpin(String, [f64; 3]),
     /// All velocities become zero.
     StopMotion,
     /// All grains get a velocity.

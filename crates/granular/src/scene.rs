@@ -16,7 +16,7 @@ pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurv
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
-use granular_core::units::{Acceleration, Energy, Frequency, Length, Time, Velocity};
+use granular_core::units::{Acceleration, AngularVelocity, Energy, Frequency, Length, Time, Velocity};
 use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
 use granular_lbm::spec::LbmSpec;
 use push::PushProfileSpec;
@@ -507,6 +507,20 @@ pub enum Change {
     },
     /// Gravity, one component per axis.
     Gravity(Vec<Acceleration>),
+    /// The velocity of a face of the fluid, the same all over it: of a wall along itself, or of an Inflow.
+    FaceVelocity {
+        /// Which one: left, right, bottom or top; in space also front or back.
+        face: String,
+        /// New velocity, one component per axis.
+        velocity: Vec<Velocity>,
+    },
+    /// How the surface of an obstacle without a path turns.
+    ObstacleSpin {
+        /// Name of the obstacle.
+        obstacle: String,
+        /// New angular velocity: one value in the plane, three components in space.
+        spin: Vec<AngularVelocity>,
+    },
     /// All velocities and spins become zero.
     StopMotion,
     /// All grains get a velocity beside the one they have, at once, as from a blow or a quake. One of `speed`, `energy` and

@@ -59,6 +59,33 @@ impl<D: Dim> Setup<D> {
             SetupError::new("name of an obstacle", format!("`{name}`"), allowed)
         })
     }
+
+    /// Sets the velocity \[m/s\] of a face by its name, before the start: see [`Lbm::set_face_velocity`].
+    ///
+    /// # Errors
+    /// As [`Lbm::set_face_velocity`].
+    pub fn set_face_velocity(&mut self, name: &str, velocity: D::Vec) -> Result<(), SetupError> {
+        let (axis, side) = Self::face_named(name)?;
+        self.set_velocity_of(axis, side, velocity)
+    }
+
+    fn set_velocity_of(&mut self, axis: usize, side: usize, velocity: D::Vec) -> Result<(), SetupError> {
+        let face = self.faces[axis][side].clone();
+        let Some(moving) = face.moving(velocity) else {
+            let value = format!("{face:?}, which has no velocity of its own");
+            let allowed = "a wall, or a face through which fluid enters at a velocity";
+            return Err(SetupError::new(format!("face `{}`", face_names::<D>()[axis][side]), value, allowed));
+        };
+        self.faces[axis][side] = moving;
+        let checked = self.check_wall(axis, side).and_then(|()| {
+            let error = || SetupError::new("velocity of a face", format!("{velocity:?}"), "finite numbers");
+            velocity.is_finite().then_some(()).ok_or_else(error)
+        });
+        if checked.is_err() {
+            self.faces[axis][side] = face;
+        }
+        checked
+    }
 }
 
 impl<D: Dim> Face<D> {
@@ -152,29 +179,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         side: usize,
         velocity: <L::Dim as Dim>::Vec,
     ) -> Result<(), SetupError> {
-        let face = self.setup.faces[axis][side].clone();
-        let Some(moving) = face.moving(velocity) else {
-            let value = format!("{face:?}, which has no velocity of its own");
-            let allowed = "a wall, or a face through which fluid enters at a velocity";
-            return Err(SetupError::new(
-                format!("face `{}`", face_names::<L::Dim>()[axis][side]),
-                value,
-                allowed,
-            ));
-        };
-        self.setup.faces[axis][side] = moving;
-        let checked = self.setup.check_wall(axis, side).and_then(|()| {
-            let finite = velocity.is_finite();
-            let error = || SetupError::new("velocity of a face", format!("{velocity:?}"), "finite numbers");
-            finite.then_some(()).ok_or_else(error)
-        });
-        if checked.is_err() {
-            self.setup.faces[axis][side] = face;
-            return checked;
-        }
+        let before = self.setup.faces[axis][side].clone();
+        self.setup.set_velocity_of(axis, side, velocity)?;
         match self.set_faces.iter_mut().find(|set| (set.axis, set.side) == (axis, side)) {
             Some(set) => set.velocity = velocity,
-            None => self.set_faces.push(SetFace { axis, side, before: face, velocity }),
+            None => self.set_faces.push(SetFace { axis, side, before, velocity }),
         }
         Ok(())
     }

@@ -104,7 +104,12 @@ fn panel(scene: &Scene, grid: &GridFields, units: Units, spec: &MapSpec<'_>) -> 
 pub(super) fn outline(scene: &Scene, obstacle: &ObstacleSpec) -> Vec<[f64; 2]> {
     let upward = upward(scene);
     let of = |values: &[Length]| [0, upward].map(|axis| values.get(axis).map_or(0.0, |x| x.value()));
-    match &obstacle.shape {
+    let mut shape = &obstacle.shape;
+    while let ShapeSpec::Hole(inner) = shape {
+        shape = inner;
+    }
+    match shape {
+        ShapeSpec::Hole(_) => Vec::new(),
         ShapeSpec::Ball { centre, radius } => {
             let [x, y] = of(centre);
             let corner = |k| {

@@ -9,7 +9,7 @@ use granular_core::{Dim, Limits, Simulation, Solver, Vector};
 use granular_coupling::{CarriedObstacles, PrescribedMotion};
 use granular_lbm::spec::{LbmSpec, PrecisionSpec};
 use granular_lbm::{D2Q9, D3Q19, Lattice, Lbm, Real, SetupError};
-use read::{Fluid, Reader};
+use read::{Fluid, Reader, components};
 use std::any::Any;
 
 /// Builds the simulation of a scene of a fluid.
@@ -101,7 +101,18 @@ fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Vec<Vec<Action>> {
                     problems.vector::<D, _>(&path, values);
                     list.push(Action::Gravity(values.iter().map(|value| value.value()).collect()));
                 }
-                _ => problems.add(path, "a change of grains or walls", "Gravity, for a fluid", ""),
+                Change::FaceVelocity { face, velocity } => {
+                    let velocity = velocity.iter().map(|value| value.value()).collect();
+                    list.push(Action::FaceVelocity(face.clone(), velocity));
+                }
+                Change::ObstacleSpin { obstacle, spin } => {
+                    let spin: Vec<f64> = spin.iter().map(|value| value.value()).collect();
+                    list.push(Action::ObstacleSpin(obstacle.clone(), components(&spin)));
+                }
+                _ => {
+                    let allowed = "FaceVelocity, ObstacleSpin or Gravity, for a fluid";
+                    problems.add(path, "a change of grains or walls", allowed, "");
+                }
             }
         }
         stages.push(list);
@@ -164,6 +175,7 @@ fn place_of(name: &str, error: &SetupError) -> (String, String) {
         "Lambda" | "relaxation rate" => (format!("solvers.{name}.operator"), format!("of {what} {value}")),
         "cells" => (format!("solvers.{name}.spacing"), format!("such that cells are {value}")),
         "faces" => ("fluid.faces".to_owned(), value.clone()),
+        "body force" => ("fluid.forces".to_owned(), value.clone()),
         "velocity of a wall" => ("fluid.faces".to_owned(), format!("with a {what} {value}")),
         _ => ("fluid".to_owned(), format!("with {what} {value}")),
     }
@@ -171,19 +183,33 @@ fn place_of(name: &str, error: &SetupError) -> (String, String) {
 
 /// Makes a change, if the solver is of this method.
 pub(super) fn apply(action: &Action, solver: &mut dyn Any) {
-    let Action::Gravity(values) = action else { return };
     if let Some(lbm) = solver.downcast_mut::<Lbm<D2Q9, 9, f64>>() {
-        set_acceleration(lbm, values);
+        apply_to(lbm, action);
     } else if let Some(lbm) = solver.downcast_mut::<Lbm<D2Q9, 9, f32>>() {
-        set_acceleration(lbm, values);
+        apply_to(lbm, action);
     } else if let Some(lbm) = solver.downcast_mut::<Lbm<D3Q19, 19, f64>>() {
-        set_acceleration(lbm, values);
+        apply_to(lbm, action);
     } else if let Some(lbm) = solver.downcast_mut::<Lbm<D3Q19, 19, f32>>() {
-        set_acceleration(lbm, values);
+        apply_to(lbm, action);
     }
 }
 
-fn set_acceleration<L: Lattice<Q>, T: Real, const Q: usize>(lbm: &mut Lbm<L, Q, T>, values: &[f64]) {
-    let acceleration = Vector::from_slice(values).expect("the number of axes was checked at build");
-    lbm.set_acceleration(acceleration).expect("numbers of a scene are finite");
+fn apply_to<L: Lattice<Q>, T: Real, const Q: usize>(lbm: &mut Lbm<L, Q, T>, action: &Action) {
+    let vector =
+        |values: &[f64]| Vector::from_slice(values).expect("the number of axes was checked at build");
+    match action {
+        Action::Gravity(values) => {
+            lbm.set_acceleration(vector(values)).expect("numbers of a scene are finite");
+        }
+        Action::FaceVelocity(face, velocity) => {
+            lbm.set_face_velocity(face, vector(velocity)).expect("the face was checked at build");
+        }
+        Action::ObstacleSpin(name, spin) => {
+            let mut motion = lbm.obstacle_motion(name).expect("the name was checked at build");
+            motion.spin = granular_core::Spin::of_components(*spin);
+            // A surface as fast as sound is refused by the Mach number, before the start.
+            lbm.set_obstacle_motion(name, motion).expect("the speed was checked at build");
+        }
+        _ => {}
+    }
 }

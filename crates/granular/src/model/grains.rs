@@ -324,6 +324,10 @@ fn action<D: Dim>(
         Change::Close(name) => Action::Wall(name.clone(), false),
         Change::Start(name) => Action::Moving(name.clone(), true),
         Change::Halt(name) => Action::Moving(name.clone(), false),
+        Change::FaceVelocity { .. } | Change::ObstacleSpin { .. } => {
+            problems.add(path, "a change of a fluid", "a change of grains or walls", "");
+            return None;
+        }
         Change::Push { .. } | Change::Cell(_) => return None,
     })
 }
@@ -360,6 +364,8 @@ fn apply_to<D: Dim>(action: &Action, dem: &mut Dem<D>, pushed: &mut Option<PushR
             dem.set_inlet(name, *runs);
         }
         Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
+        // Of a fluid, and refused beside grains.
+        Action::FaceVelocity(..) | Action::ObstacleSpin(..) => {}
     }
 }
 

@@ -1,7 +1,7 @@
 //! The fluid of a scene, described apart from the method that solves it.
 
 use granular_core::units::{
-    AngularVelocity, Density, Frequency, KinematicViscosity, Length, Pressure, Velocity,
+    Acceleration, AngularVelocity, Density, Frequency, KinematicViscosity, Length, Pressure, Velocity,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -33,6 +33,10 @@ pub struct FluidSpec {
     /// How it moves at the start.
     #[serde(default)]
     pub start: StartSpec,
+    /// Body forces that vary in space or time, beside gravity; they add up. What they drive has no speed that is known
+    /// beforehand: give `largest_speed`. Several of which one varies in both cost more than the fluid itself.
+    #[serde(default)]
+    pub forces: Vec<ForceSpec>,
     /// Points at which pressure and velocity can be written, by names of your choice: the probes `pressure_at_<name>` and
     /// `velocity_at_<name>_x`.
     #[serde(default)]
@@ -41,6 +45,67 @@ pub struct FluidSpec {
 
 fn water() -> Density {
     1000.0.into()
+}
+
+/// A body force per mass: its size, times how it varies in space, times how it varies in time.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ForceSpec {
+    /// Its size, one component per axis.
+    pub acceleration: Vec<Acceleration>,
+    /// How it varies in space.
+    #[serde(default)]
+    pub in_space: InSpaceSpec,
+    /// How it varies in time.
+    #[serde(default)]
+    pub in_time: InTimeSpec,
+}
+
+/// How a force varies in space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum InSpaceSpec {
+    /// The same everywhere.
+    #[default]
+    Uniform,
+    /// As `sin(2 pi x / wavelength + phase)`, x being the coordinate along an axis.
+    Sine {
+        /// The axis.
+        along: AxisSpec,
+        /// Wavelength.
+        wavelength: Length,
+        /// Phase where the coordinate is zero, in radians.
+        #[serde(default)]
+        phase: f64,
+    },
+}
+
+/// How a force varies in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum InTimeSpec {
+    /// Not at all.
+    #[default]
+    Steady,
+    /// As `sin(2 pi frequency t + phase)`, t being the time since the start of the run.
+    Oscillating {
+        /// Frequency.
+        frequency: Frequency,
+        /// Phase at the start in radians.
+        #[serde(default)]
+        phase: f64,
+    },
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum AxisSpec {
+    /// To the right.
+    X,
+    /// Upwards in the plane, to the back in space.
+    Y,
+    /// Upwards, in space only.
+    Z,
 }
 
 /// Faces of the box. A pair of opposite faces that is left out is periodic.
@@ -71,6 +136,19 @@ pub enum FaceSpec {
     Wall,
     /// A wall that moves along itself, one component per axis.
     MovingWall(Vec<Velocity>),
+    /// A wall that moves along itself, fastest in its middle and at rest at its edges, so that a closed box has no jump of
+    /// velocity in its corners: the velocity given, one component per axis, times `16 s^2 (1 - s)^2` with s from 0 to 1
+    /// along the face; in space the product of two, of which periodic axes have none.
+    RegularisedLid(Vec<Velocity>),
+    /// A wall along which the fluid slips: its velocity less that of the wall is the slip length times the derivative of
+    /// the velocity across the wall.
+    NavierSlip {
+        /// Slip length.
+        length: Length,
+        /// Velocity of the wall along itself, one component per axis; at rest by default.
+        #[serde(default)]
+        velocity: Vec<Velocity>,
+    },
     /// No flow through and no friction along the face.
     FreeSlip,
     /// The fluid enters at a velocity.
@@ -146,6 +224,9 @@ pub enum ShapeSpec {
     },
     /// A polygon in the plane, its corners in order around it.
     Polygon(Vec<Vec<Length>>),
+    /// All that lies outside of a shape, such as `Hole(Ball(centre: [0, 0], radius: "1 cm"))`: the fluid is inside, as in a tank.
+    /// With an obstacle within it, it is an annulus.
+    Hole(Box<ShapeSpec>),
 }
 
 /// How the surface of a body is met.

@@ -17,6 +17,7 @@ mod command_limits;
 mod command_push;
 mod command_sample;
 mod command_snapshots;
+mod command_stir;
 mod command_sweep;
 mod fuzz;
 mod scenes;

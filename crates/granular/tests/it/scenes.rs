@@ -99,6 +99,10 @@ const SHORTENED: &[(&str, &[&str])] = &[
         &["sample.extent=Grains(200)", "stages.0.end=For(\"0.02 s\")", "stages.1.end=For(\"0.06 s\")"],
     ),
     (
+        "ch5_annulus",
+        &["stages.1.end=For(\"0.1 s\")", "outputs.1.every=Time(\"0.02 s\")", "figures.1.times=[0]"],
+    ),
+    (
         "ch4_calibration",
         &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.01 s\")"],
     ),

@@ -249,3 +249,17 @@ fn a_force_that_is_not_finite_is_refused_where_there_is_fluid_only() {
     assert!(error.what == "body force" && error.value.contains("4.5"), "{error}");
     assert_eq!(pole(true), None);
 }
+
+#[test]
+fn only_a_force_that_varies_in_space_takes_memory() {
+    let bytes = |force: Option<BodyForce<D2>>| {
+        let mut setup = Setup::<D2>::new([60, 50, 1], 1.0, 1.0, 0.8);
+        setup.body_force = force;
+        Lbm2::new(setup).unwrap().memory().bytes
+    };
+    let none = bytes(None);
+    assert_eq!(bytes(Some(BodyForce::in_time(|time| DVec2::new(1e-9 * time, 0.0)))), none);
+    let field = bytes(Some(BodyForce::in_space(|point| 1e-9 * point))) - none;
+    let least = 2 * 8 * 60 * 50;
+    assert!((least..2 * least).contains(&field), "{field} bytes");
+}

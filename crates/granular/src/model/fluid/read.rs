@@ -1,5 +1,7 @@
 //! What a scene says of a fluid, in the terms of the lattice.
 
+mod changes;
+mod forces;
 mod obstacles;
 mod spacing;
 
@@ -8,6 +10,7 @@ use super::super::grains::quoted;
 use crate::machine::room_for;
 use crate::scene::Scene;
 use crate::scene::fluid::{FaceSpec, FacesSpec, FluidSpec, ProfileSpec, StartSpec};
+pub(super) use changes::components;
 use granular_core::units::{Measured, Unit, Velocity};
 use granular_core::{Dim, Linear, Vector};
 use granular_coupling::Body;
@@ -40,8 +43,8 @@ pub(super) struct Reader<'a> {
 /// A box in the scene.
 #[derive(Clone, Copy)]
 struct Extent<D: Dim> {
-    low: D::Vec,
-    size: D::Vec,
+    pub(super) low: D::Vec,
+    pub(super) size: D::Vec,
 }
 
 impl Reader<'_> {
@@ -67,16 +70,21 @@ impl Reader<'_> {
         setup.origin = origin;
         setup.density = self.fluid.density.value();
         setup.acceleration = gravity?;
+        setup.body_force = self.forces::<D>()?;
         setup.operator = self.spec.operator.into();
         setup.smagorinsky = self.spec.smagorinsky;
         setup.faces = faces;
         setup.obstacles = obstacles;
         setup.gauges = gauges;
-        let named = bodies.iter().map(|(_, body)| body.fastest());
+        let turning = setup.obstacles.iter().map(|body| body.spin.length() * body.shape.reach());
+        let later = self.changes(&setup, &bodies);
+        let named = bodies.iter().map(|(_, body)| body.fastest()).chain(turning).chain([later]);
         let named = named.chain([self.largest_speed::<D>()]);
         let speed = self.fluid.largest_speed.map(|speed| speed.value());
         setup.expected_speed = speed.unwrap_or(named.fold(0.0, f64::max));
         setup.time_step = self.time_step(setup.expected_speed)?;
+        // Faces and obstacles as they are at the start count in any case; so do those that stages change.
+        setup.expected_speed = setup.expected_speed.max(later);
         Some(Fluid { setup, start, bodies })
     }
 
@@ -213,6 +221,20 @@ impl Reader<'_> {
             FaceSpec::Periodic => Face::Periodic,
             FaceSpec::Wall => Face::Wall(D::Vec::ZERO),
             FaceSpec::MovingWall(velocity) => Face::Wall(self.problems.vector::<D, _>(&path, velocity)?),
+            FaceSpec::RegularisedLid(velocity) => {
+                let velocity = self.problems.vector::<D, _>(&path, velocity)?;
+                Face::WallProfile(self.regularised(velocity, axis, extent))
+            }
+            FaceSpec::NavierSlip { length, velocity } => {
+                let velocity = match velocity.as_slice() {
+                    [] => D::Vec::ZERO,
+                    velocity => self.problems.vector::<D, _>(&format!("{path}.velocity"), velocity)?,
+                };
+                if length.value() < 0.0 {
+                    self.problems.add(format!("{path}.length"), length, "0 or more", "");
+                }
+                Face::NavierSlip { length: length.value(), velocity }
+            }
             FaceSpec::FreeSlip => Face::FreeSlip,
             FaceSpec::Inflow(ProfileSpec::Uniform(velocity)) => {
                 let velocity = self.problems.vector::<D, _>(&path, velocity)?;
@@ -240,9 +262,10 @@ impl Reader<'_> {
         let FacesSpec { left, right, front, back, bottom, top } = &self.fluid.faces;
         let length = |velocity: &[Velocity]| vector_of::<D, _>(velocity).map_or(0.0, Linear::length);
         let faces = [left, right, front, back, bottom, top].into_iter().flatten().map(|face| match face {
-            FaceSpec::MovingWall(velocity) | FaceSpec::Inflow(ProfileSpec::Uniform(velocity)) => {
-                length(velocity)
-            }
+            FaceSpec::MovingWall(velocity)
+            | FaceSpec::RegularisedLid(velocity)
+            | FaceSpec::NavierSlip { velocity, .. }
+            | FaceSpec::Inflow(ProfileSpec::Uniform(velocity)) => length(velocity),
             FaceSpec::Inflow(ProfileSpec::Parabola { peak }) => peak.value().abs(),
             _ => 0.0,
         });

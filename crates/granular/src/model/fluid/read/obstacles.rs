@@ -5,7 +5,7 @@ use crate::scene::fluid::{ObstacleSpec, PathSpec, ShapeSpec, SurfaceSpec};
 use granular_core::units::AngularVelocity;
 use granular_core::{D2, Dim, Linear, Spin, Vector};
 use granular_coupling::{Body, Path};
-use granular_lbm::{Ball, Block, Obstacle, Polygon, Reference, Shape, WallScheme};
+use granular_lbm::{Ball, Block, Hole, Obstacle, Polygon, Reference, Shape, WallScheme};
 use std::sync::Arc;
 
 impl Reader<'_> {
@@ -90,10 +90,15 @@ impl Reader<'_> {
                 }
                 Some(Arc::new(Polygon { corners }))
             }
+            ShapeSpec::Hole(inner) => Some(Arc::new(Hole(self.shape::<D>(&format!("{path}.Hole"), inner)?))),
         }
     }
 
-    fn spin<D: Dim>(&mut self, path: &str, values: &[AngularVelocity]) -> Option<D::Spin> {
+    pub(in crate::model::fluid) fn spin<D: Dim>(
+        &mut self,
+        path: &str,
+        values: &[AngularVelocity],
+    ) -> Option<D::Spin> {
         let numbers: Vec<f64> = values.iter().map(|value| value.value()).collect();
         match (D::N, numbers.as_slice()) {
             (_, []) => Some(D::Spin::ZERO),
@@ -116,7 +121,8 @@ impl Reader<'_> {
     ) -> Option<Body<D>> {
         let place = format!("{path}.path");
         let ShapeSpec::Ball { centre, radius } = shape else {
-            self.problems.add(place, "the path of a shape with corners", "a path of a Ball", "");
+            let value = "the path of a shape that is no Ball";
+            self.problems.add(place, value, "a path of a Ball", "what turns in its place has a spin instead");
             return None;
         };
         let way = match way {
