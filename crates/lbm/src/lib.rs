@@ -49,6 +49,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod absorbing;
+mod advice;
 mod bitmap;
 mod boundary;
 mod collision;
@@ -78,6 +79,7 @@ mod solver;
 #[cfg(feature = "serde")]
 pub mod spec;
 
+pub use advice::Sloshing;
 pub use bitmap::{Bitmap, Solid};
 pub use collision::{OddRate, Operator};
 pub use gauge::Gauge;

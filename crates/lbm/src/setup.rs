@@ -182,7 +182,7 @@ impl<D: Dim> Setup<D> {
             viscosity,
             density: 1000.0,
             acceleration: D::Vec::ZERO,
-            operator: Operator::EXACT_WALLS,
+            operator: Operator::DEFAULT,
             smagorinsky: None,
             faces,
             obstacles: Vec::new(),
