@@ -116,6 +116,8 @@ pub struct Limits {
     pub steps: Vec<StepLimit>,
     /// Bounds on other numbers.
     pub bounds: Vec<Bound>,
+    /// What else is worth knowing before the first step, a sentence each.
+    pub advice: Vec<String>,
 }
 
 impl Limits {

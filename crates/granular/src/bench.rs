@@ -2,7 +2,8 @@
 //!
 //! [`precision`] studies measure how the error of a case falls with what a run costs; they give a
 //! [`Study`] with its Pareto front and fitted orders. [`speed`] measures how many grain-steps a
-//! second grains take, [`lattice`] how many cell updates a fluid, [`tessellate`] how many cells of Voronoi diagrams.
+//! second grains take, [`lattice`] how many cell updates a fluid, [`tessellate`] how many cells of Voronoi diagrams;
+//! [`operators`] puts collision operators side by side.
 
 mod cells;
 mod column;
@@ -10,6 +11,7 @@ mod figure;
 mod flows;
 mod hertz;
 pub mod lattice;
+pub mod operators;
 mod restitution;
 mod settling;
 pub mod speed;

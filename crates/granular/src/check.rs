@@ -308,6 +308,7 @@ impl Report {
             "size": self.size.0,
             "limits": steps.chain(bounds).collect::<Vec<_>>(),
             "pushes": pushes.collect::<Vec<_>>(),
+            "advice": self.limits.advice,
             "memory_bytes": self.memory.bytes,
             "bytes_per_item": self.memory.bytes_per_item,
             "estimated_seconds": self.estimated_seconds,
@@ -363,6 +364,12 @@ impl fmt::Display for Report {
                 "  {:<32} {:>8.3} of {} {}  {verdict}  ({})",
                 bound.name, bound.value, bound.allowed, bound.unit, bound.why
             )?;
+        }
+        if !self.limits.advice.is_empty() {
+            writeln!(f, "\nadvice")?;
+        }
+        for advice in &self.limits.advice {
+            writeln!(f, "  {advice}")?;
         }
         let megabytes = self.memory.bytes as f64 / 1e6;
         writeln!(f, "\nmemory    {megabytes:.2} MB, {} bytes per {item}", self.memory.bytes_per_item)?;

@@ -32,7 +32,7 @@ mod packing_density;
 pub(crate) mod parallel;
 mod plane;
 mod recorded;
-mod reference;
+pub(crate) mod reference;
 pub(crate) mod restitution;
 mod rolling;
 mod row;

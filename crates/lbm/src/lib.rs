@@ -52,6 +52,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod absorbing;
+mod advice;
 mod bitmap;
 mod body_force;
 mod boundary;
@@ -88,6 +89,7 @@ mod solver;
 pub mod spec;
 mod wall_faces;
 
+pub use advice::Sloshing;
 pub use bitmap::{Bitmap, Solid};
 pub use body_force::BodyForce;
 pub use collision::{OddRate, Operator};

@@ -210,7 +210,7 @@ impl<D: Dim> Setup<D> {
             density: 1000.0,
             acceleration: D::Vec::ZERO,
             body_force: None,
-            operator: Operator::EXACT_WALLS,
+            operator: Operator::DEFAULT,
             smagorinsky: None,
             faces,
             obstacles: Vec::new(),

@@ -17,7 +17,7 @@ const MACH: f64 = 0.3;
 const CLOSURE: f64 = 0.1;
 
 /// Largest grid Reynolds numbers, of the flow (`u h / nu`) and of sound (`c_s h / nu`).
-type Borne = [f64; 2];
+pub(crate) type Borne = [f64; 2];
 /// No limit was found on sound.
 const ANY: f64 = f64::INFINITY;
 
@@ -41,9 +41,9 @@ const BORNE: [[Borne; 6]; 5] = [
     [[80.0, ANY], [1000.0, ANY], [80.0, 140.0], [800.0, ANY], [80.0, 140.0], [800.0, ANY]],
 ];
 
-/// What a flow bears; see [`BORNE`].
-fn borne<D: Dim>(setup: &Setup<D>) -> Borne {
-    let row = match setup.operator {
+/// What a flow bears with an operator; see [`BORNE`].
+pub(crate) fn borne<D: Dim>(setup: &Setup<D>, operator: Operator) -> Borne {
+    let row = match operator {
         Operator::SingleRelaxation => 0,
         Operator::TwoRelaxation { .. } => 1,
         Operator::MultipleRelaxation { odd: OddRate::Magic(_), .. } => 2,
@@ -114,7 +114,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                  it, and the error falls with the square of the step"
             )),
         });
-        let [allowed, of_sound] = borne(setup);
+        let [allowed, of_sound] = borne(setup, setup.operator);
         report.bounds.push(Bound {
             name: "grid Reynolds number",
             value: speed * spacing / viscosity,
@@ -141,6 +141,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 ),
             });
         }
+        report.advice.extend(setup.advice(speed));
     }
 
     fn memory_in_use(&self) -> Memory {

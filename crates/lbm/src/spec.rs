@@ -14,7 +14,7 @@ pub struct LbmSpec {
     /// What sets the step.
     #[serde(default)]
     pub step: StepSpec,
-    /// Collision operator.
+    /// Collision operator; `TwoRelaxation(0.1875)` by default.
     #[serde(default)]
     pub operator: OperatorSpec,
     /// Smagorinsky constant C, such as 0.1, of the eddy viscosity `(C spacing)^2 sqrt(2 S:S)`; none by default.
@@ -42,20 +42,27 @@ impl Default for StepSpec {
     }
 }
 
-/// A collision operator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+/// A collision operator. Flat walls along the lattice are exact where `Lambda` is 3/16; inclined and round ones are exact with none.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum OperatorSpec {
-    /// Multiple relaxation times whose walls lie half-way between cells at any viscosity.
-    #[default]
+    /// Multiple relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way between cells at any viscosity;
+    /// bears little viscosity worst of all.
     ExactWalls,
     /// One relaxation time (BGK): walls move with the viscosity.
     SingleRelaxation,
-    /// Two relaxation times with this magic number, such as 0.25.
+    /// Two relaxation times with this `Lambda`. By default 3/16 = 0.1875: flat walls along the lattice lie exactly half-way between
+    /// cells, and the error at others, if half-way, does not depend on the viscosity in slow flow.
     TwoRelaxation(f64),
-    /// Multiple relaxation times with the rates of the thesis.
+    /// Multiple relaxation times with the rates of the thesis: walls move with the viscosity; among the nearest in free flow.
     Kumar,
-    /// Regularised: bears the highest Reynolds numbers, and is the least accurate at walls.
+    /// Regularised: bears high Reynolds numbers and is accurate away from walls, which move with the viscosity.
     Regularised,
+}
+
+impl Default for OperatorSpec {
+    fn default() -> Self {
+        Self::TwoRelaxation(3.0 / 16.0)
+    }
 }
 
 /// Numbers in which the fluid is stored and computed.

@@ -256,6 +256,7 @@ impl Graph {
                 report.steps.append(&mut own.steps);
             }
             report.bounds.append(&mut own.bounds);
+            report.advice.append(&mut own.advice);
         }
         self.edges.iter().for_each(|edge| edge.limits(&self.nodes, report));
     }

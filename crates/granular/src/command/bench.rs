@@ -2,7 +2,7 @@
 
 use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
-use granular::bench::{self, Precision, lattice, speed, tessellate};
+use granular::bench::{self, Precision, lattice, operators, speed, tessellate};
 use granular::failure::Failure;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -18,6 +18,8 @@ pub(super) enum Bench {
         #[arg(short, long, value_name = "FOLDER")]
         out: Option<PathBuf>,
     },
+    /// Collision operators side by side: walls, pores, free flow, moving frames, cost; takes a minute.
+    Operators,
     /// Steps a second over sizes and threads.
     Speed {
         /// Solver.
@@ -73,6 +75,10 @@ impl Bench {
                 bench::save(&study, &folder)?;
                 let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
                 show(common, &json!(study), || format!("{study}{files}"));
+            }
+            Self::Operators => {
+                let found = operators::operators()?;
+                show(common, &json!(found), || found.to_string());
             }
             Self::Speed { solver, flags } => {
                 let Speed { disks, spheres, sites, pools: threads, repeats, state, write_state } = flags;

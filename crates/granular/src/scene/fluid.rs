@@ -153,9 +153,10 @@ pub enum FaceSpec {
     FreeSlip,
     /// The fluid enters at a velocity.
     Inflow(ProfileSpec),
-    /// The fluid leaves, or enters, at a pressure over that at rest, and straight through the face. Sound comes back.
+    /// The fluid leaves, or enters, at a pressure over that at rest, and straight through the face. It throws all sound back, which may
+    /// look like shedding for long: where a stream leaves, Absorbing is better.
     Outflow(Pressure),
-    /// Sound leaves, and the pressure settles at this one over that at rest.
+    /// The fluid leaves, or enters; sound and vortices leave, and the mean pressure over the face settles at this one over that at rest.
     Absorbing(Pressure),
 }
 

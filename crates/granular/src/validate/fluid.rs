@@ -1,7 +1,7 @@
 //! Lattice Boltzmann cases: channels, decaying vortices, a cavity, bodies in a stream, balances.
 
 pub(super) mod balance;
-pub(super) mod bodies;
+pub(crate) mod bodies;
 pub(crate) mod cavity;
 pub(super) mod channel;
 pub(crate) mod cylinder;
@@ -19,8 +19,9 @@ const FITS: &str = "the flow of the case is in range";
 const SOLVER: &str = "lbm";
 
 /// Every operator that a scene may choose.
-const OPERATORS: [(&str, Operator); 5] = [
+const OPERATORS: [(&str, Operator); 6] = [
     ("one relaxation time", Operator::SingleRelaxation),
+    ("two relaxation times, Lambda 3/16", Operator::DEFAULT),
     ("two relaxation times, Lambda 1/4", Operator::TwoRelaxation { magic: 0.25 }),
     ("multiple relaxation times, exact walls", Operator::EXACT_WALLS),
     ("multiple relaxation times, rates of Kumar", Operator::KUMAR),

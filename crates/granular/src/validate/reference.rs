@@ -3,7 +3,7 @@
 /// The numbers of some columns, row by row; a cell that is no number is `NaN`.
 ///
 /// Only the last column of a reference may hold text with commas.
-pub(super) fn columns<const N: usize>(text: &str, names: [&str; N]) -> Vec<[f64; N]> {
+pub(crate) fn columns<const N: usize>(text: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let places = names.map(|name| {

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod absorbing;
+mod advice;
 mod body_forces;
 mod channel;
 mod contract;

@@ -8,7 +8,9 @@ use super::{SOLVER, advance, fluid};
 use crate::failure::Failure;
 use granular_core::D2;
 use granular_core::glam::DVec2;
-use granular_lbm::{Ball, D2Q9, Face, Flow, Lbm2, Obstacle, OpenScheme, Profile, Setup, WallScheme};
+use granular_lbm::{
+    Ball, D2Q9, Face, Flow, Lbm2, Obstacle, OpenScheme, Operator, Profile, Setup, WallScheme,
+};
 use granular_validation_data::SQUARE_ARRAY;
 use std::f64::consts::PI;
 
@@ -26,30 +28,52 @@ pub(crate) fn square_array(rows: &mut Rows, effort: Effort) -> Result<(), Failur
     Ok(())
 }
 
-/// Drag of a disk in a periodic square over viscosity and mean velocity.
+/// A disk in a periodic square.
+pub(crate) struct Array {
+    /// Cells between centres.
+    pub(crate) side: usize,
+    /// Share of the plane that disks take.
+    pub(crate) fraction: f64,
+    /// Relaxation time in steps.
+    pub(crate) tau: f64,
+    pub(crate) operator: Operator,
+    pub(crate) wall: WallScheme,
+}
+
 fn drag_in_array(side: usize, fraction: f64) -> Result<f64, Failure> {
-    let length = side as f64;
-    let mut setup = Setup::<D2>::new([side, side, 1], 1.0, 1.0, 0.8);
-    let radius = length * (fraction / PI).sqrt();
-    let acceleration = 1e-6;
-    setup.acceleration = DVec2::new(acceleration, 0.0);
-    setup.obstacles.push(Obstacle::new("disk", Ball { centre: DVec2::splat(0.5 * length), radius }));
-    let (density, dt) = (setup.density, setup.time_step);
-    let mut lbm = fluid::<D2Q9, 9>(setup);
-    let flux =
-        |lbm: &Lbm2| lbm.velocities().iter().map(|velocity| velocity.x).sum::<f64>() / (length * length);
-    // Until the flux does not change any more.
-    let (mut before, leg) = (0.0, (0.02 * length * length / dt) as u64);
-    for _ in 0..200 {
-        advance(&mut lbm, leg)?;
-        let now = flux(&lbm);
-        if (now / before - 1.0_f64).abs() < 1e-6 {
-            break;
+    Array { side, fraction, tau: 0.8, operator: Operator::DEFAULT, wall: WallScheme::default() }.drag()
+}
+
+impl Array {
+    /// Drag over viscosity and mean velocity, in creeping flow.
+    pub(crate) fn drag(&self) -> Result<f64, Failure> {
+        let Self { side, fraction, tau, operator, wall } = *self;
+        let length = side as f64;
+        let mut setup = Setup::<D2>::new([side, side, 1], 1.0, 1.0, tau);
+        setup.operator = operator;
+        let radius = length * (fraction / PI).sqrt();
+        let acceleration = 1e-6;
+        setup.acceleration = DVec2::new(acceleration, 0.0);
+        let mut disk = Obstacle::new("disk", Ball { centre: DVec2::splat(0.5 * length), radius });
+        disk.wall = wall;
+        setup.obstacles.push(disk);
+        let (density, dt) = (setup.density, setup.time_step);
+        let mut lbm = fluid::<D2Q9, 9>(setup);
+        let flux =
+            |lbm: &Lbm2| lbm.velocities().iter().map(|velocity| velocity.x).sum::<f64>() / (length * length);
+        // Until the flux does not change any more.
+        let (mut before, leg) = (0.0, (0.02 * length * length / dt) as u64);
+        for _ in 0..200 {
+            advance(&mut lbm, leg)?;
+            let now = flux(&lbm);
+            if (now / before - 1.0_f64).abs() < 1e-6 {
+                break;
+            }
+            before = now;
         }
-        before = now;
+        // The pressure gradient that the body force stands for acts on the disk as well.
+        Ok(density * acceleration * length * length / (density * flux(&lbm)))
     }
-    // The pressure gradient that the body force stands for acts on the disk as well.
-    Ok(density * acceleration * length * length / (density * flux(&lbm)))
 }
 
 /// A disk that moves along the middle of a channel, seen from the disk.
