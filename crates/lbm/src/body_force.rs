@@ -64,7 +64,8 @@ impl<D: Dim> BodyForce<D> {
         Self(Kind::Product(Arc::new(acceleration), Arc::new(factor)))
     }
 
-    /// Any function of place \[m\] and time \[s\]: asked for each cell and step, which takes longer than the step itself.
+    /// Any function of place \[m\] and time \[s\]: asked for each cell and step, on which a sine
+    /// in the plane spends several times what the step itself takes.
     pub fn everywhere(acceleration: impl Fn(D::Vec, f64) -> D::Vec + Send + Sync + 'static) -> Self {
         Self(Kind::Everywhere(Arc::new(acceleration)))
     }
