@@ -1,5 +1,6 @@
 //! Bodies that surround the fluid.
 
+use crate::setup::SetupError;
 use crate::shape::Shape;
 use granular_core::{Dim, Vector};
 
@@ -26,6 +27,10 @@ impl<D: Dim, S: Shape<D>> Shape<D> for Hole<S> {
         !self.0.contains(point)
     }
 
+    fn check(&self) -> Result<(), SetupError> {
+        self.0.check()
+    }
+
     /// Without end.
     fn bounds(&self) -> (D::Vec, D::Vec) {
         let end = |length| D::Vec::from_slice(&[length; 3][..D::N]).expect("one component per axis");
@@ -48,6 +53,10 @@ impl<D: Dim, S: Shape<D>> Shape<D> for Hole<S> {
 impl<D: Dim> Shape<D> for std::sync::Arc<dyn Shape<D>> {
     fn contains(&self, point: D::Vec) -> bool {
         (**self).contains(point)
+    }
+
+    fn check(&self) -> Result<(), SetupError> {
+        (**self).check()
     }
 
     fn bounds(&self) -> (D::Vec, D::Vec) {
