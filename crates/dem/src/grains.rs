@@ -257,7 +257,8 @@ pub(crate) fn check_sizes(radii: impl Iterator<Item = f64>) -> Result<(), SetupE
     Ok(())
 }
 
-fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(), SetupError> {
+/// Refuses a grain of which a value is out of range.
+pub(crate) fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(), SetupError> {
     if !(grain.radius.is_finite() && grain.radius > 0.0) {
         return Err(SetupError::new("radius of a grain", grain.radius, "positive and finite"));
     }

@@ -4,7 +4,7 @@
 //! sizes are drawn from the seed and the number of the grain, never from a stream: there is no random state.
 
 use crate::dem::Dem;
-use crate::grains::{Grain, check_finite, check_sizes};
+use crate::grains::{Grain, check, check_finite, check_sizes};
 use crate::material::{MaterialId, SetupError};
 use granular_core::{Dim, Linear, Section, SnapshotError, Vector};
 use room::{Ball, Room};
@@ -311,6 +311,9 @@ impl<D: Dim> Dem<D> {
         }
         if inlet.material.0 as usize >= self.materials.len() {
             return refuse("material", f64::from(inlet.material.0), "one of the materials of this set-up");
+        }
+        for &radius in &inlet.radii {
+            check(&Grain::<D>::at(inlet.low, radius, inlet.material), &self.materials)?;
         }
         Ok(())
     }

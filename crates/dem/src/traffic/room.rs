@@ -21,7 +21,8 @@ impl<D: Dim> Room<D> {
     /// The box of an inlet with the grains that reach into it.
     pub(super) fn of(inlet: &Inlet<D>, near: Vec<Ball<D>>) -> Self {
         let radii = inlet.radii.iter().copied().chain(near.iter().map(|(_, radius)| *radius));
-        let mut edge = 2.0 * radii.fold(0.0, f64::max);
+        // A smaller number would not grow below.
+        let mut edge = (2.0 * radii.fold(0.0, f64::max)).max(f64::MIN_POSITIVE);
         let counts = |edge: f64| -> [f64; 3] {
             std::array::from_fn(|axis| match axis < D::N {
                 true => ((inlet.high - inlet.low).component(axis) / edge).floor().max(1.0),
@@ -108,8 +109,10 @@ mod tests {
     fn boxes_of_any_size_have_few_cells() {
         for width in [1e-3, 1.0, 1e300, 1.7e308] {
             let high = DVec2::new(width, 2e-3);
-            let room = Room::<D2>::of(&inlet::<D2>(high, vec![0.5e-3]), Vec::new());
-            assert!(room.members.len() as f64 <= MOST_CELLS && room.has_place(0.5 * high, 0.5e-3));
+            for radius in [0.5e-3, 5e-324] {
+                let room = Room::<D2>::of(&inlet::<D2>(high, vec![radius]), Vec::new());
+                assert!(room.members.len() as f64 <= MOST_CELLS && room.has_place(0.5 * high, radius));
+            }
         }
     }
 }

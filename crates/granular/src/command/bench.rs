@@ -4,6 +4,7 @@ use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
 use granular::bench::{self, Precision, lattice, operators, speed, tessellate};
 use granular::failure::Failure;
+use granular::machine;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -81,6 +82,7 @@ impl Bench {
                 show(common, &json!(found), || found.to_string());
             }
             Self::Speed { solver, flags } => {
+                flags.refuse_many()?;
                 let Speed { disks, spheres, sites, pools: threads, repeats, state, write_state } = flags;
                 let speeds = match solver {
                     Solver::Tessellate => {
@@ -97,5 +99,28 @@ impl Bench {
             }
         }
         Ok(())
+    }
+}
+
+impl Speed {
+    /// Refuses what this machine has neither memory nor cores for.
+    fn refuse_many(&self) -> Result<(), Failure> {
+        let counts = [
+            ("--disks", &self.disks, 700.0),
+            ("--spheres", &self.spheres, 1100.0),
+            ("--sites", &self.sites, 500.0),
+        ];
+        for (flag, list, bytes) in counts {
+            let largest = list.iter().copied().max().unwrap_or(0);
+            machine::room_for(largest as f64, bytes)
+                .map_err(|allowed| Failure::io(flag, format!("{largest}; allowed: {allowed}")))?;
+        }
+        let most = machine::most_threads();
+        match self.pools.iter().find(|&&threads| threads > most) {
+            Some(threads) => {
+                Err(Failure::io("--pools", format!("{threads}; allowed: at most {most} on this machine")))
+            }
+            None => Ok(()),
+        }
     }
 }

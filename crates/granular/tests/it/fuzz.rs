@@ -29,7 +29,7 @@ const SLOW: f64 = 2.0;
 const HANG: f64 = 10.0;
 const DEAD: Duration = Duration::from_secs(120);
 /// Address space of a child \[kB\]: what a scene may take is compared with what is left of it.
-const MEMORY: u64 = 600_000;
+const MEMORY: u64 = 400_000;
 /// Scenes that one child tries.
 const BATCH: u64 = 2000;
 /// Told to a child: numbers of its first scene and of the one after its last.

@@ -79,6 +79,9 @@ fn mark(text: &str, token: &Token) -> u8 {
     if token.kind == Kind::Mark { text.as_bytes()[token.span.start] } else { 0 }
 }
 
+/// Brackets within brackets beyond this are not looked into.
+const DEEPEST: usize = 100;
+
 fn opens(text: &str, token: &Token) -> bool {
     b"([{".contains(&mark(text, token))
 }
@@ -98,7 +101,8 @@ fn group(text: &str, tokens: &[Token], open: usize, path: &str, found: &mut Vec<
         let empty = Entry { key, value: 0..0, whole: 0..0, path: place.clone() };
         found.push(empty);
         while at < tokens.len() && !b",)]}".contains(&mark(text, &tokens[at])) {
-            at = if opens(text, &tokens[at]) { group(text, tokens, at, &place, found) } else { at + 1 };
+            let goes_in = opens(text, &tokens[at]) && place.matches('.').count() < DEEPEST;
+            at = if goes_in { group(text, tokens, at, &place, found) } else { at + 1 };
         }
         let last = at.min(tokens.len()) - 1;
         if value_from <= last && at > start {
