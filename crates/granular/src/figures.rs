@@ -49,15 +49,24 @@ impl Drawn {
     }
 }
 
-/// Draws all figures of a scene. A figure that cannot be drawn does not keep the others from it.
-pub fn draw(scene: &Scene, folder: &RunFolder, records: &[StageRecord], column: Option<ColumnSize>) -> Drawn {
+/// Draws all figures of a scene. What has nothing to show, such as the spectrum of a short series, is told and does not keep
+/// the others from it.
+///
+/// # Errors
+/// When a figure cannot be written, which may be put right.
+pub fn draw(
+    scene: &Scene,
+    folder: &RunFolder,
+    records: &[StageRecord],
+    column: Option<ColumnSize>,
+) -> Result<Drawn, Failure> {
     let run = Run { scene, folder, records, column };
     let mut drawn = Drawn::default();
     for (k, spec) in scene.figures.iter().enumerate() {
         let (place, name) = (format!("figures.{k}"), spec.path());
-        match run.save(spec) {
-            Ok((path, left_out)) => {
-                drawn.paths.push(path);
+        match run.figure(spec) {
+            Ok((figure, left_out)) => {
+                drawn.paths.push(run.save(&figure, name)?);
                 drawn.left_out.extend(left_out.map(|left_out| format!("{place} `{name}`: {left_out}")));
             }
             Err(failure) => {
@@ -69,7 +78,7 @@ pub fn draw(scene: &Scene, folder: &RunFolder, records: &[StageRecord], column: 
             }
         }
     }
-    drawn
+    Ok(drawn)
 }
 
 /// A run whose figures are drawn.
@@ -85,15 +94,14 @@ struct Run<'a> {
 type Made = (Figure, Option<String>);
 
 impl Run<'_> {
-    /// Draws and saves a figure.
-    fn save(&self, spec: &FigureSpec) -> Result<(PathBuf, Option<String>), Failure> {
-        let path = self.folder.path().join(spec.path());
+    /// Writes a figure of this name; returns its path without ending.
+    fn save(&self, figure: &Figure, name: &str) -> Result<PathBuf, Failure> {
+        let path = self.folder.path().join(name);
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
         }
-        let (figure, left_out) = self.figure(spec)?;
         figure.save(&path)?;
-        Ok((path, left_out))
+        Ok(path)
     }
 
     fn figure(&self, spec: &FigureSpec) -> Result<Made, Failure> {

@@ -171,14 +171,14 @@ pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, F
 /// Draws the figures of a run again.
 ///
 /// # Errors
-/// When the folder is none of a run. Figures that cannot be drawn are in the result.
+/// When the folder is none of a run, or a figure cannot be written. Those that have nothing to show are in the result.
 pub fn plot(out: &Path) -> Result<Drawn, Failure> {
     let folder = RunFolder::open(out)?;
     let text = SceneText::read(folder.scene_path())?;
     let (scene, model) = check::read(&text)?;
     let records: Vec<StageRecord> = serde_json::from_value(folder.facts()?["stages"].clone())
         .map_err(|error| Failure::io(out.display(), format!("run.json has no stages: {error}")))?;
-    Ok(crate::figures::draw(&scene, &folder, &records, model.column))
+    crate::figures::draw(&scene, &folder, &records, model.column)
 }
 
 impl<'a> Session<'a> {
@@ -254,8 +254,8 @@ impl<'a> Session<'a> {
         }
         self.save(self.scene.stages.len())?;
         self.stepping = None;
-        // The run is done also without its figures, which `granular plot` can draw again.
-        self.figures = crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column);
+        // The run is done also when a figure has nothing to show: to resume it would change nothing.
+        self.figures = crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
         let told = self.figures.failed.iter().chain(self.figures.left_out.iter().filter(|_| !self.quiet));
         told.for_each(|warning| progress::say(format_args!("warning: {warning}")));
         Ok(())

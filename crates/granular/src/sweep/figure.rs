@@ -76,6 +76,8 @@ struct Counts {
     left_out: usize,
     /// Most runs of which a mean was taken.
     averaged: usize,
+    /// Values of the first run of each mean, by its curve and place along x.
+    first: BTreeMap<(String, u64), Value>,
     /// Axes other than seeds over which means were taken.
     mixed: BTreeSet<String>,
 }
@@ -114,7 +116,7 @@ fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -
     if counts.averaged > 1 {
         let Counts { averaged, mixed, .. } = counts;
         chart = if mixed.is_empty() {
-            chart.note(format!("means over up to {averaged} seeds, bars: their standard error"))
+            chart.note(format!("means over up to {averaged} runs, bars: their standard error"))
         } else {
             let mixed = mixed.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
             chart
@@ -151,14 +153,6 @@ impl Collected {
         let (x, y) = (self.along(view.x.as_deref())?, self.column(y));
         let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
         let before = counts.left_out;
-        let others = self.axes.iter().filter(|axis| *axis != x && Some(axis.as_str()) != by);
-        let varies = |axis: &&String| {
-            let first = self.runs.first().map(|run| &run["values"][axis.as_str()]);
-            self.runs.iter().any(|run| Some(&run["values"][axis.as_str()]) != first)
-        };
-        // Along a number of their own runs with different values do not meet by repetition.
-        let mixed = others.filter(|axis| !is_seed(axis)).filter(varies);
-        counts.mixed.extend(mixed.cloned());
         for run in &self.runs {
             counts.runs += 1;
             let (Some(value), Some(at)) = (run["measures"][y].as_f64(), self.place(run, x)?) else {
@@ -167,7 +161,15 @@ impl Collected {
             };
             let of_axis = by.map(|by| format!("{by} = {}", text(&run["values"][by])));
             let parts = [name].into_iter().chain(of_axis.as_deref()).filter(|part| !part.is_empty());
-            let groups = entry(curves, parts.collect::<Vec<_>>().join(", "));
+            let label = parts.collect::<Vec<_>>().join(", ");
+            // Runs of one mean that differ in more than their seeds are no repetitions.
+            let values = &run["values"];
+            let first = counts.first.entry((label.clone(), at.to_bits())).or_insert_with(|| values.clone());
+            let differs = |axis: &&String| {
+                !is_seed(axis) && *axis != x && first[axis.as_str()] != values[axis.as_str()]
+            };
+            counts.mixed.extend(self.axes.iter().filter(differs).cloned());
+            let groups = entry(curves, label);
             match groups.iter_mut().find(|(known, _)| *known == at) {
                 Some((_, values)) => {
                     values.push(value);
@@ -402,7 +404,7 @@ mod tests {
             chart(["a", "runout"], &view, curves, &counts).unwrap()
         };
         let seeds = drawn(["0.5", "0.5"], None);
-        assert_eq!(seeds.notes, ["means over up to 2 seeds, bars: their standard error"]);
+        assert_eq!(seeds.notes, ["means over up to 2 runs, bars: their standard error"]);
         assert_eq!(seeds.series[0].style, Style::ErrorBars(vec![1.0, 0.0]));
         let mixed = drawn(["0.3", "0.5"], None);
         assert!(

@@ -100,9 +100,13 @@ fn draws_figures(scratch: &Scratch) {
         .unwrap();
     assert_eq!(plot(&["--reference", "laws.csv"]).expect(0).out, "whole/runout.svg, whole/runout.png\n");
     let figure = fs::read_to_string(scratch.path("whole/runout.svg")).unwrap();
-    for part in
-        ["materials.glass.friction", "runout [1]", "this sweep", "Theirs, 2004", "means over up to 2 runs"]
-    {
+    for part in [
+        "materials.glass.friction",
+        "runout [1]",
+        "this sweep",
+        "Theirs, 2004",
+        "means over all values of gravity, up to 2 runs",
+    ] {
         assert!(figure.contains(part), "`{part}` is not in the figure");
     }
     plot(&["--y", "series:front [m]", "--by", "gravity", "--log"]).expect(0);

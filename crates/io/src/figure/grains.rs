@@ -214,7 +214,7 @@ impl GrainFigure {
         }
         self.draw_lines(drawing, area, panel, &place);
         for mark in &panel.marks {
-            draw_mark(drawing, area, mark, &place);
+            draw_mark(drawing, area, (mark, !panel.grains.is_empty()), &place);
         }
         layout.draw_axes(drawing, index, &self.axes);
     }
@@ -247,7 +247,12 @@ impl GrainFigure {
     }
 }
 
-fn draw_mark(drawing: &mut Drawing, area: Area, mark: &Mark, place: &dyn Fn([f64; 2]) -> Spot) {
+fn draw_mark(
+    drawing: &mut Drawing,
+    area: Area,
+    (mark, on_grains): (&Mark, bool),
+    place: &dyn Fn([f64; 2]) -> Spot,
+) {
     let stroke = Stroke { colour: Colour::of_series(1), width: 1.3, dashed: mark.dashed };
     if mark.points.iter().flatten().any(|x| !x.is_finite()) {
         return;
@@ -283,8 +288,10 @@ fn draw_mark(drawing: &mut Drawing, area: Area, mark: &Mark, place: &dyn Fn([f64
     let x = (0.5 * (left + right)).clamp(area.left + half, (area.right - half).max(area.left + half));
     let y = y.clamp(area.top + LABEL, (area.bottom - 3.0).max(area.top + LABEL));
     // Grains behind it would make it unreadable.
-    let paper = Area { left: x - half, top: y - LABEL, right: x + half, bottom: y + 3.0 };
-    drawing.rectangle(paper, Some(Fill { colour: Colour::WHITE, opacity: 0.8 }), None);
+    if on_grains {
+        let paper = Area { left: x - half, top: y - LABEL, right: x + half, bottom: y + 3.0 };
+        drawing.rectangle(paper, Some(Fill { colour: Colour::WHITE, opacity: 0.8 }), None);
+    }
     let lettering = Lettering { colour: Colour::of_series(1), ..Lettering::plain(LABEL, Anchor::Middle) };
     drawing.text(&mark.label, [x, y], lettering);
 }
