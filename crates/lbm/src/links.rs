@@ -151,6 +151,8 @@ pub(crate) struct Cuts<T> {
     weight: f64,
     /// Mass that came off the fluid and is not given back yet, see [`crate::mass`].
     pub(crate) kept: i64,
+    /// Mass that goes with the velocity of the obstacle in each step, without its spin.
+    swept: i64,
     /// Force and torque of the fluid on the obstacle in the last step, in lattice units.
     pub(crate) force: [f64; 3],
     pub(crate) torque: [f64; 3],
@@ -203,18 +205,27 @@ impl<T: Real> Cuts<T> {
         let weight =
             cuts.iter().map(|cut| (36.0 * L::WEIGHTS[cut.port.direction]).round()).sum::<f64>() / 36.0;
         let links = cuts.iter().map(link).collect();
-        Self { links, weight, kept: 0, force: [0.0; 3], torque: [0.0; 3] }
+        Self { links, weight, kept: 0, swept: 0, force: [0.0; 3], torque: [0.0; 3] }
     }
 
-    /// Takes the velocity \[cells per step\] of the wall at the end of each arm \[cells\].
+    /// Takes the velocity \[cells per step\] of the wall at the end of each arm \[cells\]; without an arm it is that of the centre.
     pub(crate) fn set_velocity<L: Lattice<Q>, const Q: usize>(
         &mut self,
         velocity: impl Fn([f64; 3]) -> [f64; 3],
     ) {
+        let centre = velocity([0.0; 3]);
+        self.swept = 0;
         for link in &mut self.links {
+            let (way, weight) = (L::VELOCITIES[link.direction as usize], L::WEIGHTS[link.direction as usize]);
             link.velocity = velocity(link.arm);
-            link.added = T::of(link.pull * dot(L::VELOCITIES[link.direction as usize], link.velocity));
+            link.added = T::of(link.pull * dot(way, link.velocity));
+            self.swept = self.swept.wrapping_add(counted(6.0 * weight * dot(way, centre)));
         }
+    }
+
+    /// Leaves with the obstacle what came off the fluid in a step, but for what it swept.
+    pub(crate) fn keep_of_step(&mut self, taken: i64) {
+        self.kept = self.kept.wrapping_add(taken.wrapping_sub(self.swept));
     }
 
     /// The density that all links give back in the next step.
@@ -229,12 +240,13 @@ impl<T: Real> Cuts<T> {
         let values = &mut populations.values[..];
         let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
         let due = self.due();
+        let mut taken = 0_i64;
         for link in &self.links {
             let left = link.from.map(|from| values[from[at] as usize]);
             let entering = entering_cut(left, link.weights, link.added + link.share * due);
             values[link.to[at] as usize] = entering;
             let (out, back) = (left[0].double(), entering.double());
-            self.kept = self.kept.wrapping_add(counted(out - back));
+            taken = taken.wrapping_add(counted(out - back));
             let velocity = L::VELOCITIES[link.direction as usize].map(f64::from);
             let push: [f64; 3] = std::array::from_fn(|axis| {
                 out * (velocity[axis] - link.velocity[axis]) + back * (velocity[axis] + link.velocity[axis])
@@ -247,6 +259,7 @@ impl<T: Real> Cuts<T> {
             }
         }
         (self.force, self.torque) = (force, torque);
+        self.keep_of_step(taken);
     }
 
     pub(crate) fn bytes(&self) -> usize {

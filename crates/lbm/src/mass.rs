@@ -1,9 +1,10 @@
 //! Mass that the walls of obstacles keep from the fluid, and give back.
 //!
-//! What enters from an interpolated wall differs from what left towards it, and over a closed surface the differences
-//! leave a rest of third order. No mass passes a wall, so each obstacle gives the rest of a step back in the next one: by the same
-//! density over all its links, which pushes nowhere, since the weights of the links of a closed surface sum to no momentum. The same
-//! holds for what a body that moves covers and uncovers, beyond the density at rest.
+//! What enters from an interpolated wall differs from what left towards it, and over a closed surface the differences leave a
+//! small rest, which grows with the square of the speed. No mass passes a wall, so each obstacle gives the rest of a step back in
+//! the next one: by the same density over all its links, which pushes nowhere, since the weights of the links of a closed surface
+//! sum to no momentum. The same holds for what a body that moves covers and uncovers, beyond the density at rest. What it sweeps
+//! by its velocity is no rest: over a closed surface that sums to nothing, but a body may enter through a face or touch another.
 //!
 //! Mass is counted in whole numbers, so that a sum has the same bits in any order.
 

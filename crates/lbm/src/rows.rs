@@ -128,7 +128,7 @@ impl<T: Real> RowLinks<T> {
     /// Hands over what obstacles kept in that step.
     pub(crate) fn hand_over_kept(&self, obstacles: &mut [Cuts<T>]) {
         for (number, obstacle) in obstacles.iter_mut().enumerate() {
-            obstacle.kept = obstacle.kept.wrapping_add(self.kept.of(number));
+            obstacle.keep_of_step(self.kept.of(number));
         }
     }
 

@@ -230,7 +230,7 @@ pub enum ShapeSpec {
     Hole(Box<ShapeSpec>),
 }
 
-/// How the surface of a body is met.
+/// How the surface of a body is met. No choice lets mass through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum SurfaceSpec {
     /// Where it is, by linear interpolation in two cases (Bouzidi, Firdaouss and Lallemand).
@@ -238,7 +238,7 @@ pub enum SurfaceSpec {
     Interpolated,
     /// Where it is, by one formula (Yu, Mei, Luo and Shyy; eq. 5.51 of the thesis).
     Yu,
-    /// As steps half-way between cells: keeps mass exactly.
+    /// As steps half-way between cells: of first order for a curved surface.
     HalfWay,
 }
 

@@ -143,3 +143,60 @@ fn a_sphere_that_turns_in_a_box_keeps_the_mass_of_the_fluid() {
         assert!(mass.abs() < 1e-5, "{scheme:?}: {mass}");
     }
 }
+
+/// Disks that touch and move with the fluid as one disturb nothing, though the surface of neither is closed.
+#[test]
+fn disks_that_touch_and_move_with_a_stream_disturb_nothing() {
+    let velocity = DVec2::new(0.0625, 0.03125);
+    for scheme in SCHEMES {
+        let mut setup = Setup::<D2>::new([30, 20, 1], 1.0, 0.1, 0.8);
+        setup.time_step = 1.0;
+        setup.density = 1.0;
+        let centres = [DVec2::new(9.3, 9.1), DVec2::new(17.0, 10.4)];
+        for (name, centre) in ["one", "two"].into_iter().zip(centres) {
+            setup.obstacles.push(Obstacle::new(name, Ball { centre, radius: 4.1 }));
+        }
+        setup.obstacles.iter_mut().for_each(|disk| (disk.wall, disk.velocity) = (scheme, velocity));
+        let mut lbm = Lbm2::new(setup).unwrap();
+        lbm.set_flow(|_| Flow { pressure: 0.0, velocity });
+        for step in 0..60 {
+            for (k, centre) in centres.into_iter().enumerate() {
+                let position = centre + velocity * (f64::from(step) + 0.5);
+                Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[k] =
+                    Motion { position, velocity, spin: 0.0 };
+            }
+            lbm.advance(1.0, 1).unwrap();
+        }
+        for (x, y) in (0..30).flat_map(|x| (0..20).map(move |y| (x, y))) {
+            let Some(flow) = lbm.flow([x, y, 0]) else { continue };
+            assert!((flow.velocity - velocity).length() < 1e-13, "{scheme:?} {x} {y}: {:?}", flow.velocity);
+        }
+    }
+}
+
+/// A body that enters through a wall drives out what it sweeps.
+#[test]
+fn a_piston_drives_out_what_it_sweeps() {
+    for scheme in SCHEMES {
+        let speed = 0.005;
+        let mut setup = Setup::<D2>::new([60, 6, 1], 1.0, 0.1, 0.8);
+        setup.time_step = 1.0;
+        setup.density = 1.0;
+        setup.faces[0] = [Face::REST, Face::absorbing(0.0)];
+        let (low, high) = (DVec2::new(-40.0, -9.0), DVec2::new(4.3, 15.0));
+        setup.obstacles.push(Obstacle::new("piston", Block { low, high }));
+        (setup.obstacles[0].wall, setup.obstacles[0].velocity.x) = (scheme, speed);
+        let start = setup.obstacles[0].motion();
+        let mut lbm = Lbm2::new(setup).unwrap();
+        lbm.set_flow(|_| Flow { pressure: 0.0, velocity: start.velocity });
+        let mut mean = 0.0;
+        for step in 0..4000 {
+            let position = start.position + start.velocity * (f64::from(step) + 0.5);
+            Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[0] = Motion { position, ..start };
+            lbm.advance(1.0, 1).unwrap();
+            mean += lbm.flow([50, 3, 0]).unwrap().velocity.x / 4000.0;
+        }
+        println!("{scheme:?}: {:.4} of the speed of the piston", mean / speed);
+        assert!((mean / speed - 1.0).abs() < 0.02, "{scheme:?}: {mean} where {speed} is right");
+    }
+}
