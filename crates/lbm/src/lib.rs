@@ -42,7 +42,7 @@
 //!
 //! Obstacles move when a motion is lent to the fluid (`Accepts<ObstacleMotion>`), as by a coupling. Open faces bear less than
 //! the fluid within: in a stream of 0.1
-//! cells per step, [`Operator::EXACT_WALLS`] needs a relaxation time of 0.55 beside any of them; [`Operator::Regularised`]
+//! cells per step, [`Operator::EXACT_WALLS`] needs a relaxation time of 0.55 beside any of them, the default 0.53; [`Operator::Regularised`]
 //! needs 0.53 where fluid leaves through a velocity, and in the plane 0.505 where it leaves through a pressure. A sudden
 //! start between pressures leaves a momentum of alternating sign from cell to cell and step to step that nothing damps
 //! (3/2 of the pressure drop per cell, in lattice units): start from the pressure at rest with

@@ -254,3 +254,38 @@ fn a_relaxation_that_cannot_be_is_refused() {
         assert_eq!(error.what, "relaxation of a face");
     }
 }
+
+/// Mean and standard deviation of the drag coefficient of the first of two disks in a channel, five crossings of sound after
+/// a sudden start.
+fn drag_after_a_start(outlet: Face<D2>) -> [f64; 2] {
+    let mut setup = Setup::<D2>::new([200, 41, 1], 1.0, 1.0, 0.6);
+    let speed = 0.1 / 3.0_f64.sqrt() * setup.lattice_speed();
+    let parabola = move |p: DVec2| DVec2::new(4.0 * speed * p.y / 41.0 * (1.0 - p.y / 41.0), 0.0);
+    setup.faces[0] = [Face::Velocity(Profile::new(parabola), OpenScheme::ZouHe), outlet];
+    setup.faces[1] = [Face::REST, Face::REST];
+    for x in [50.0, 80.0] {
+        let disk = Ball { centre: DVec2::new(x, 20.5), radius: 5.0 };
+        setup.obstacles.push(Obstacle::new("disk", disk));
+    }
+    let mut lbm = Lbm2::new(setup).unwrap();
+    let (dt, scale) = (lbm.setup().time_step, 0.5 * lbm.setup().density * speed * speed * 10.0);
+    lbm.advance(dt, 2000).unwrap();
+    let drags: Vec<f64> = (0..1000)
+        .map(|_| {
+            lbm.advance(dt, 1).unwrap();
+            lbm.force_on(0).x / scale
+        })
+        .collect();
+    let mean = drags.iter().sum::<f64>() / 1000.0;
+    let variance = drags.iter().map(|drag| (drag - mean).powi(2)).sum::<f64>() / 1000.0;
+    [mean, variance.sqrt()]
+}
+
+#[test]
+fn drag_settles_soon_where_sound_leaves() {
+    // 3.1813 in the end.
+    let [mean, spread] = drag_after_a_start(Face::absorbing(0.0));
+    assert!((mean / 3.1813 - 1.0).abs() < 0.02 && spread < 0.05, "{mean} +- {spread}");
+    let [_, spread] = drag_after_a_start(Face::Pressure(0.0, OpenScheme::Regularised));
+    assert!(spread > 0.5, "{spread}");
+}
