@@ -55,12 +55,12 @@ impl Default for Operator {
 }
 
 impl Operator {
-    /// Two relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way at any viscosity, and it bears
-    /// more than [`Operator::EXACT_WALLS`] in every flow that was measured (docs/lbm-studies.md).
+    /// Two relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way at any viscosity. It bears less viscosity
+    /// than [`Operator::EXACT_WALLS`] in shear layers, moving frames and jets, but needs more in a cavity (docs/lbm-studies.md).
     pub const DEFAULT: Self = Self::TwoRelaxation { magic: 3.0 / 16.0 };
 
     /// Multiple relaxation times with flat walls exactly half-way at any viscosity: they damp sound more than
-    /// [`Operator::DEFAULT`], and bear the least viscosity worst of all.
+    /// [`Operator::DEFAULT`], and blow up in shear layers and moving frames that all others bear.
     pub const EXACT_WALLS: Self =
         Self::MultipleRelaxation { ghosts: [1.5, 1.4, 1.4], odd: OddRate::Magic(3.0 / 16.0) };
 

@@ -46,7 +46,7 @@ impl Default for StepSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum OperatorSpec {
     /// Multiple relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way between cells at any viscosity;
-    /// bears little viscosity worst of all.
+    /// blows up in shear layers that all others bear.
     ExactWalls,
     /// One relaxation time (BGK): walls move with the viscosity.
     SingleRelaxation,

@@ -60,7 +60,15 @@ const SHORTENED: &[(&str, &[&str])] = &[
         ],
     ),
     ("ch4_shear", &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.02 s\")"]),
-    ("ch5_cavity", &["solvers.fluid.spacing=50 mm", "stages.0.end=For(\"12 s\")"]),
+    (
+        "ch5_cavity",
+        &[
+            "solvers.fluid.spacing=50 mm",
+            // Too few cells for the default operator: a grid Reynolds number of 50 where 25 are borne.
+            "solvers.fluid.operator=Regularised",
+            "stages.0.end=For(\"12 s\")",
+        ],
+    ),
     ("ch5_cylinder_steady", &["solvers.fluid.spacing=10 mm", "stages.0.end=For(\"1 s\")"]),
     (
         "ch5_cylinder_street",
