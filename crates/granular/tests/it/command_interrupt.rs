@@ -206,8 +206,8 @@ fn a_run_that_was_killed_before_its_scene_starts_again() {
 #[test]
 fn a_signal_ends_the_building_of_a_sample() {
     let scratch = Scratch::with_scene("building");
-    // Minutes of building: disks of very different sizes in one pile.
-    let large = ["--set", "sample.extent=Grains(20000)", "--set", "sample.packing=Ballistic", "--set"];
+    // Half a minute of building: disks of very different sizes in one pile.
+    let large = ["--set", "sample.extent=Grains(400000)", "--set", "sample.packing=Ballistic", "--set"];
     let wide = "sample.grading=EqualMass(min: \"0.1 mm\", max: \"60 mm\")";
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let run = scratch.start(

@@ -263,9 +263,9 @@ fn drag_after_a_start(outlet: Face<D2>) -> [f64; 2] {
     let parabola = move |p: DVec2| DVec2::new(4.0 * speed * p.y / 41.0 * (1.0 - p.y / 41.0), 0.0);
     setup.faces[0] = [Face::Velocity(Profile::new(parabola), OpenScheme::ZouHe), outlet];
     setup.faces[1] = [Face::REST, Face::REST];
-    for x in [50.0, 80.0] {
+    for (name, x) in [("first", 50.0), ("second", 80.0)] {
         let disk = Ball { centre: DVec2::new(x, 20.5), radius: 5.0 };
-        setup.obstacles.push(Obstacle::new("disk", disk));
+        setup.obstacles.push(Obstacle::new(name, disk));
     }
     let mut lbm = Lbm2::new(setup).unwrap();
     let (dt, scale) = (lbm.setup().time_step, 0.5 * lbm.setup().density * speed * speed * 10.0);
