@@ -15,7 +15,7 @@ pub(super) type Line = [[f64; 2]; 2];
 pub(super) type Reach = [[f64; 2]; 2];
 
 /// Corners of the outline of a tube that is seen along its axis.
-const ROUND: usize = 48;
+const ROUND: usize = 120;
 /// Components of the normal of a plane below which, as a share of its length, it is seen edge on.
 const EDGE_ON: f64 = 1e-6;
 
