@@ -293,7 +293,7 @@ fn number(old: &str, chance: &mut Chance) -> String {
         (Ok(value), 3) => format!("{}", value + [1.0, -1.0, 0.5, 1e-9][chance.below(4)]),
         // A whole number stays one.
         (Ok(value), 4) if value.fract() == 0.0 && !old.contains(['.', 'e']) => {
-            format!("{}", value as i64 * [2, 3, 10, 1000, -1][chance.below(5)])
+            format!("{}", (value as i64).saturating_mul([2, 3, 10, 1000, -1][chance.below(5)]))
         }
         (_, 5) => format!("\"{} {}\"", chance.of(NUMBERS), chance.of(UNITS)),
         _ => chance.of(NUMBERS).to_owned(),
