@@ -391,8 +391,12 @@ impl fmt::Display for Report {
             writeln!(f, "\nwarning: {warning}")?;
         }
         // What the problems are, the failure says.
-        let verdict = if self.problems.is_empty() { "the scene can be run" } else { "the scene is refused" };
-        writeln!(f, "\n{verdict}")
+        match (self.problems.is_empty(), self.warnings.len()) {
+            (false, _) => writeln!(f, "\nthe scene is refused"),
+            (true, 0) => writeln!(f, "\nthe scene can be run"),
+            (true, 1) => writeln!(f, "\nthe scene can be run, with a warning"),
+            (true, count) => writeln!(f, "\nthe scene can be run, with {count} warnings"),
+        }
     }
 }
 

@@ -235,7 +235,11 @@ impl<'a> Session<'a> {
         result.map_err(|failure| {
             let exit = if let Failure::Interrupted { .. } = failure { "interrupted" } else { "failed" };
             // The failure itself matters more than a folder that cannot be written.
-            let _ = self.write_facts(exit, None);
+            if let Ok(mut facts) = self.write_facts(exit, None) {
+                facts["code"] = json!(failure.code());
+                facts["reason"] = json!(failure.to_string());
+                let _ = self.folder.set_facts(&facts);
+            }
             match failure {
                 Failure::Io(reason) => {
                     let path = self.folder.path().display();

@@ -113,7 +113,7 @@ pub enum Sample {
     Column {
         /// How large the column is: by its number of grains or by its width.
         extent: Extent,
-        /// Height over width before anything moves.
+        /// Height over width of the packed column; `Loose` stands up to twice as high before it settles.
         aspect_ratio: f64,
         /// Depth along y over the width: needed in space, not allowed in the plane.
         #[serde(default)]

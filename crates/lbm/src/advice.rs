@@ -52,7 +52,7 @@ impl<D: Dim> Setup<D> {
             }
         }
         let walls = |across: usize| {
-            let count = self.faces[across].iter().filter(|face| matches!(face, Face::Wall(_))).count();
+            let count = self.faces[across].iter().filter(|face| face.is_wall()).count();
             count as f64 / (self.cells[across] as f64 * self.spacing)
         };
         let walls: f64 = (0..D::N).filter(|across| *across != axis).map(walls).sum();
@@ -125,8 +125,8 @@ impl<D: Dim> Setup<D> {
             };
             return format!("{told}: {} bears {:.0}{}", named(better), bears(better), self.at_walls(better));
         }
-        let has_walls = !self.obstacles.is_empty()
-            || self.faces.iter().take(D::N).flatten().any(|face| matches!(face, Face::Wall(_)));
+        let has_walls =
+            !self.obstacles.is_empty() || self.faces.iter().take(D::N).flatten().any(|face| face.is_wall());
         if !has_walls {
             let free = Operator::KUMAR;
             return match self.operator {
@@ -170,7 +170,7 @@ impl<D: Dim> Setup<D> {
     /// How flat walls lie with an operator, in the narrowest channel between faces.
     fn at_walls(&self, operator: Operator) -> String {
         let magic = operator.magic(self.tau());
-        let between = |axis: &usize| self.faces[*axis].iter().all(|face| matches!(face, Face::Wall(_)));
+        let between = |axis: &usize| self.faces[*axis].iter().all(|face| face.is_wall());
         let narrowest = (0..D::N).filter(between).map(|axis| self.cells[axis]).min();
         // Pores are narrower than the box.
         let cells = if self.obstacles.is_empty() { narrowest.unwrap_or(8) } else { 8 };

@@ -22,6 +22,11 @@ use crate::setup::{Face, Setup, SetupError};
 use granular_core::{Dim, Linear, Vector};
 
 impl<D: Dim> Face<D> {
+    /// Whether it is a wall, also one whose velocity varies or along which the fluid slips; a face without friction is none.
+    pub(crate) fn is_wall(&self) -> bool {
+        matches!(self, Self::Wall(_) | Self::WallProfile(_) | Self::NavierSlip { .. })
+    }
+
     /// Velocity \[m/s\] of a wall at a point \[m\]; none of what is no wall.
     pub(crate) fn wall_velocity(&self, point: D::Vec) -> Option<D::Vec> {
         match self {

@@ -141,10 +141,12 @@ fn of_fluid(scene: &Scene, solver: &dyn Solver) -> Vec<Mark> {
         let (kind, dashed) = match face {
             None | Some(FaceSpec::Periodic) => ("periodic", true),
             Some(FaceSpec::Wall) => ("wall", false),
-            Some(FaceSpec::MovingWall(_)) => ("moving wall", false),
+            Some(FaceSpec::MovingWall(_) | FaceSpec::RegularisedLid(_)) => ("moving wall", false),
+            Some(FaceSpec::NavierSlip { .. }) => ("wall with slip", false),
             Some(FaceSpec::FreeSlip) => ("free slip", false),
             Some(FaceSpec::Inflow(_)) => ("inflow", true),
-            Some(_) => ("open", true),
+            Some(FaceSpec::Outflow(_)) => ("outflow", true),
+            Some(FaceSpec::Absorbing(_)) => ("absorbing", true),
         };
         Mark { points: ends.to_vec(), closed: false, dashed, label: format!("{name}: {kind}") }
     };

@@ -5,7 +5,7 @@ use granular_core::units::{Angle, AngularVelocity, Force, Frequency, Length, Mas
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// How a wall moves. A wall that some stage starts waits until then.
+/// How a wall moves. A wall that some stage starts waits until then; one that none starts moves from the beginning.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum MotionSpec {
@@ -49,7 +49,8 @@ pub enum MotionSpec {
         /// Mass of the wall, in the plane per metre of depth; that of all grains by default.
         #[serde(default)]
         mass: Option<Mass>,
-        /// Damping in N s/m; by default the root of the mass times the normal stiffness of the material.
+        /// Damping in N s/m; by default the root of the mass times the normal stiffness of the material. A wall that nothing
+        /// stops moves at the force over the damping; while it moves, grains feel the force less the damping times its speed.
         #[serde(default)]
         damping: Option<f64>,
         /// Greatest speed of the wall; any by default.

@@ -82,8 +82,12 @@ fn grains_with_nothing_below_are_told_before_the_run_and_end_it() {
     let report = scratch.granular(&["check", "scene.ron"]).expect(0);
     assert!(report.out.contains("nothing lies below 85 of 85 grains"), "{}", report.out);
     assert!(report.out.contains("add a wall below them, such as Floor"), "{}", report.out);
+    assert!(report.out.ends_with("the scene can be run, with a warning\n"), "{}", report.out);
     let run = scratch.granular(&["run", "scene.ron", "--quiet", "--out", "out"]).expect(4);
     run.says(&["all 85 grains have left the walls", "add a wall below the grains"]);
+    let facts = crate::support::facts(&scratch.path("out"));
+    assert_eq!(facts["code"], 4);
+    assert!(facts["reason"].as_str().unwrap().contains("all 85 grains have left the walls"), "{facts}");
     // Free fall for 5 s would be 123 m.
     let table = fs::read_to_string(scratch.path("out/s.csv")).unwrap();
     let last: f64 = table.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();

@@ -82,6 +82,14 @@ fn an_operator_is_recommended_with_the_reason() {
     assert!(told(free.clone())[0].contains("Kumar is nearer in free flow"));
     free.operator = Operator::KUMAR;
     assert!(told(free)[0].starts_with("operator Kumar suits"));
+    // A lid with a profile and a wall with slip are walls.
+    let lid = || Face::WallProfile(Profile::new(|_: DVec2| DVec2::ZERO));
+    for face in [lid, || Face::slipping(0.5)] {
+        let mut bounded = Setup::<D2>::new([20, 20, 1], 1.0, 1.0, 0.6);
+        bounded.faces[1] = [face(), face()];
+        let advice = told(bounded);
+        assert!(advice[0].starts_with("operator TwoRelaxation(0.1875) suits"), "{advice:?}");
+    }
     let walls = told(channel(Face::absorbing(0.0), Operator::SingleRelaxation));
     assert!(walls[1].contains("TwoRelaxation(0.1875) is exact at flat walls"), "{walls:?}");
 }
