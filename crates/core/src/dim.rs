@@ -59,6 +59,8 @@ pub trait Linear:
 pub trait Vector: Linear {
     /// The vector with this length along axis `axis`.
     fn along(axis: usize, length: f64) -> Self;
+    /// The vector with this length along every axis.
+    fn splat(length: f64) -> Self;
     /// Component along axis `axis`.
     fn component(self, axis: usize) -> f64;
     /// Smaller of both, component by component.
@@ -204,6 +206,9 @@ macro_rules! implement_vector {
                 let mut vector = Self::ZERO;
                 vector[axis] = length;
                 vector
+            }
+            fn splat(length: f64) -> Self {
+                <$vector>::splat(length)
             }
             #[inline(always)]
             fn component(self, axis: usize) -> f64 {

@@ -108,7 +108,7 @@ impl<D: Dim> CellGrid<D> {
 
     /// Calls `visit` for every ball in the cells within `reach` \[m\] of `position` along each axis.
     pub fn visit_within(&self, position: D::Vec, reach: f64, visit: impl FnMut(u32)) {
-        let corner = (0..D::N).fold(D::Vec::ZERO, |corner, axis| corner + D::Vec::along(axis, reach));
+        let corner = D::Vec::splat(reach);
         self.visit_cells(self.coordinates(position - corner), self.coordinates(position + corner), visit);
     }
 

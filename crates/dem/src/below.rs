@@ -19,8 +19,7 @@ impl<D: Dim> Dem<D> {
     /// Corners of a box \[m\] around all grains, walls with an end, and the points by which planes are given; none without any.
     pub fn bounds(&self) -> Option<(D::Vec, D::Vec)> {
         let of_grain = |(&position, &radius): (&D::Vec, &f64)| {
-            let reach = (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, radius));
-            (position - reach, position + reach)
+            (position - D::Vec::splat(radius), position + D::Vec::splat(radius))
         };
         let of_wall = |wall: &Wall<D>| {
             wall.shape.bounds().unwrap_or_else(|| (wall.shape.reference(), wall.shape.reference()))
@@ -85,7 +84,8 @@ impl Gates {
     }
 }
 
-fn corners<D: Dim>(low: D::Vec, high: D::Vec) -> impl Iterator<Item = D::Vec> {
+/// Corners of a box.
+pub(crate) fn corners<D: Dim>(low: D::Vec, high: D::Vec) -> impl Iterator<Item = D::Vec> {
     (0..1 << D::N).map(move |corner| {
         let of = |axis: usize| if corner >> axis & 1 == 0 { low } else { high };
         (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, of(axis).component(axis)))

@@ -200,11 +200,11 @@ impl<D: Dim> Facets<D> {
     }
 
     fn bounds_of(&self, parts: &[u32]) -> (D::Vec, D::Vec) {
-        let far = (0..D::N).fold(D::Vec::ZERO, |v, axis| v + D::Vec::along(axis, f64::INFINITY));
+        let far = D::Vec::splat(f64::INFINITY);
         let mut bounds = (far, -far);
         for &part in parts {
             let radius = self.radius(part as usize).unwrap_or(0.0);
-            let margin = (0..D::N).fold(D::Vec::ZERO, |v, axis| v + D::Vec::along(axis, radius));
+            let margin = D::Vec::splat(radius);
             for &corner in self.corners(part as usize) {
                 bounds = (bounds.0.min(corner - margin), bounds.1.max(corner + margin));
             }

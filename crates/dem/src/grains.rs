@@ -67,10 +67,11 @@ impl<D: Dim> Grains<D> {
         if u32::try_from(list.len()).is_err() {
             return Err(SetupError::new("number of grains", list.len() as f64, "below 2^32"));
         }
+        // Of sizes that do not fit together both are told, before one of them is refused by itself.
+        check_sizes(list.iter().map(|grain| grain.radius).filter(|radius| *radius > 0.0))?;
         for grain in list {
             check(grain, materials)?;
         }
-        check_sizes(list.iter().map(|grain| grain.radius))?;
         let first_material = list.first().map_or(0, |grain| grain.material.0);
         let uniform = list.iter().all(|grain| grain.material.0 == first_material);
         Ok(Self {
@@ -272,7 +273,7 @@ pub(crate) fn check<D: Dim>(grain: &Grain<D>, materials: &Materials) -> Result<(
     // The moment of inertia is the smaller or the larger of the two.
     let inertia = mass_of(grain, materials) * grain.radius * grain.radius;
     if !inertia.is_normal() {
-        let what = format!("moment of inertia of a grain of radius {} m", grain.radius);
+        let what = format!("moment of inertia of a grain of radius {:e} m", grain.radius);
         return Err(SetupError::new(what, inertia, "a number between 1e-307 and 1e308: take another radius"));
     }
     Ok(())

@@ -292,7 +292,13 @@ impl SetupError {
 
 impl std::fmt::Display for SetupError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} is {}, but must be {}", self.what, self.value, self.allowed)
+        let Self { what, value, allowed } = self;
+        // No rows of zeros.
+        if value.is_normal() && (1e-9..1e12).contains(&value.abs()) || *value == 0.0 || !value.is_finite() {
+            write!(f, "{what} is {value}, but must be {allowed}")
+        } else {
+            write!(f, "{what} is {value:e}, but must be {allowed}")
+        }
     }
 }
 

@@ -51,10 +51,18 @@ pub(crate) struct Side<D: Dim> {
 }
 
 impl PressureBetween {
-    /// The sides of the area.
+    /// Whether there is such an area beside a wall of this name.
     ///
     /// # Errors
     /// When the pressure is not finite, or a pair is not one of planes that face one another.
+    pub fn check<D: Dim>(&self, wall: &str, walls: &[Wall<D>]) -> Result<(), SetupError> {
+        self.sides(wall, walls).map(|_| ())
+    }
+
+    /// The sides of the area.
+    ///
+    /// # Errors
+    /// As [`PressureBetween::check`].
     pub(crate) fn sides<D: Dim>(&self, wall: &str, walls: &[Wall<D>]) -> Result<Vec<Side<D>>, SetupError> {
         if !self.pressure.is_finite() {
             return Err(SetupError::new(format!("pressure on wall `{wall}`"), self.pressure, "finite"));

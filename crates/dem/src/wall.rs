@@ -97,7 +97,6 @@ impl<D: Dim> Shape<D> {
 impl<D: Dim> Shape<D> {
     /// Corners of a box \[m\] around the shape where it was given; none for a plane, which has no end.
     pub fn bounds(&self) -> Option<(D::Vec, D::Vec)> {
-        let wider = |reach: f64| (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, reach));
         match *self {
             Self::Plane { .. } => None,
             Self::Segment { from, to } => Some((from.min(to), from.max(to))),
@@ -110,7 +109,9 @@ impl<D: Dim> Shape<D> {
                 let reach = (0..D::N).fold(D::Vec::ZERO, |sum, k| sum + across(k));
                 Some((from.min(to) - reach, from.max(to) + reach))
             }
-            Self::Circle { centre, radius } => Some((centre - wider(radius), centre + wider(radius))),
+            Self::Circle { centre, radius } => {
+                Some((centre - D::Vec::splat(radius), centre + D::Vec::splat(radius)))
+            }
             Self::Facets(ref facets) => Some(facets.bounds()),
         }
     }

@@ -27,6 +27,15 @@ enum Kind {
 
 const ABOUT: [&str; 3] = ["x", "y", "z"];
 
+const TORQUE: &str =
+    "torque on the wall about its axis where it turns, else about its middle (the point given for a plane)";
+const POSITION: &str = "place of the middle of the wall, or of the point given for a plane";
+const DISPLACEMENT: &str = "way that this point has gone since the start";
+const VELOCITY: &str = "velocity of this point";
+const ANGLE: &str = "angle by which the wall has turned";
+const AREA: &str = "area on which the pressure of the servo acts; in the plane a length";
+const PRESSURE: &str = "force of the grains against the servo over its area";
+
 impl<D: Dim> Dem<D> {
     /// Point \[m\] about which torques on a wall are taken, as it stands now: of its axis where it turns, else that by which its place is
     /// told.
@@ -76,35 +85,41 @@ impl<D: Dim> Dem<D> {
         self.walls.iter().enumerate().flat_map(move |(wall, description)| {
             let of = &description.name;
             let mut list = Vec::new();
-            let mut add = |name: String, unit, meaning, kind| list.push((wall, Named { name, unit, meaning, kind }));
-            let about = if D::N == 2 { 2..3 } else { 0..3 };
-            for axis in about {
-                let name = if D::N == 2 { format!("torque_on_{of}") } else { format!("torque_on_{of}_{}", ABOUT[axis]) };
-                let meaning = "torque on the wall about its axis where it turns, else about its middle (the point given for a plane)";
-                add(name, "N m", meaning, Kind::Torque(axis));
+            let mut add = |name: String, unit, meaning, kind| {
+                list.push((wall, Named { name, unit, meaning, kind }));
+            };
+            match D::N {
+                2 => add(format!("torque_on_{of}"), "N m", TORQUE, Kind::Torque(2)),
+                _ => (0..3).for_each(|axis| {
+                    add(format!("torque_on_{of}_{}", ABOUT[axis]), "N m", TORQUE, Kind::Torque(axis));
+                }),
             }
-            if moving.contains(&wall) {
-                for (axis, name) in D::AXES.iter().enumerate() {
-                    add(format!("position_of_{of}_{name}"), "m", "place of the middle of the wall, or of the point given for a plane", Kind::Position(axis));
-                    add(format!("displacement_of_{of}_{name}"), "m", "way that this point has gone since the start", Kind::Displacement(axis));
-                    add(format!("velocity_of_{of}_{name}"), "m/s", "velocity of this point", Kind::Velocity(axis));
-                }
-                if matches!(description.motion, Some(WallMotion::Turning { .. })) {
-                    add(format!("angle_of_{of}"), "rad", "angle by which the wall has turned", Kind::Angle);
-                }
-                if self.movers.pressed_area(wall).is_some() {
-                    add(format!("area_of_{of}"), "m^2", "area on which the pressure of the servo acts; in the plane a length", Kind::Area);
-                    add(format!("pressure_on_{of}"), "Pa", "force of the grains against the servo over its area", Kind::Pressure);
-                }
+            if !moving.contains(&wall) {
+                return list;
+            }
+            for (axis, name) in D::AXES.iter().enumerate() {
+                add(format!("position_of_{of}_{name}"), "m", POSITION, Kind::Position(axis));
+                add(format!("displacement_of_{of}_{name}"), "m", DISPLACEMENT, Kind::Displacement(axis));
+                add(format!("velocity_of_{of}_{name}"), "m/s", VELOCITY, Kind::Velocity(axis));
+            }
+            if matches!(description.motion, Some(WallMotion::Turning { .. })) {
+                add(format!("angle_of_{of}"), "rad", ANGLE, Kind::Angle);
+            }
+            if self.movers.pressed_area(wall).is_some() {
+                let unit = if D::N == 2 { "m" } else { "m^2" };
+                add(format!("area_of_{of}"), unit, AREA, Kind::Area);
+                add(format!("pressure_on_{of}"), "Pa", PRESSURE, Kind::Pressure);
             }
             list
         })
     }
 
     pub(crate) fn wall_catalogue(&self) -> impl Iterator<Item = Shown> + '_ {
-        self.wall_named().map(|(_, Named { name, unit, meaning, .. })| {
-            let unit = if D::N == 2 && unit == "m^2" { "m" } else { unit };
-            Shown { name, unit, meaning, kind: ShownAs::Number }
+        self.wall_named().map(|(_, Named { name, unit, meaning, .. })| Shown {
+            name,
+            unit,
+            meaning,
+            kind: ShownAs::Number,
         })
     }
 

@@ -54,7 +54,10 @@ pub struct Report {
 /// # Errors
 /// With all problems of the scene.
 pub fn read(text: &SceneText) -> Result<(Scene, Model), Failure> {
-    let scene = Scene::of(text)?;
+    built(Scene::of(text)?, text)
+}
+
+fn built(scene: Scene, text: &SceneText) -> Result<(Scene, Model), Failure> {
     let model =
         model::build(&scene).map_err(|list| Failure::Scene(SceneProblem::all_located_in(list, text)))?;
     Ok((scene, model))
@@ -120,9 +123,9 @@ fn broken_bounds(limits: &Limits) -> Vec<String> {
 /// # Errors
 /// With all problems of the scene, or why it is refused.
 pub(crate) fn read_to_run(text: &SceneText) -> Result<(Scene, Model), Failure> {
-    let limits = model::early_limits(&Scene::of(text)?);
-    let problems = limits.map_or(Vec::new(), |limits| broken_bounds(&limits));
-    if problems.is_empty() { read(text) } else { Err(refusal(text.name(), &problems)) }
+    let scene = Scene::of(text)?;
+    let problems = model::early_limits(&scene).map_or(Vec::new(), |limits| broken_bounds(&limits));
+    if problems.is_empty() { built(scene, text) } else { Err(refusal(text.name(), &problems)) }
 }
 
 /// Checks a scene and measures its speed on a few steps.

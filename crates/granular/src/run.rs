@@ -164,7 +164,7 @@ pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, F
         let clock = session.model.simulation.clock();
         progress::say(format_args!("resuming at {:.6} s, step {}", clock.time(), clock.step()));
     }
-    session.write_facts("running", None)?;
+    session.write_facts(("running", None), None)?;
     session.finish_run(stage, true)
 }
 
@@ -219,7 +219,7 @@ impl<'a> Session<'a> {
     fn start(&mut self) -> Result<Value, Failure> {
         let snapshots = self.store.folder();
         std::fs::create_dir_all(snapshots).map_err(|error| Failure::io(snapshots.display(), error))?;
-        self.write_facts("running", None)?;
+        self.write_facts(("running", None), None)?;
         self.finish_run(0, false)
     }
 
@@ -231,15 +231,11 @@ impl<'a> Session<'a> {
         let result = (first..self.scene.stages.len())
             .try_for_each(|stage| self.stage(stage, under_way && stage == first))
             .and_then(|()| self.close())
-            .and_then(|()| self.write_facts("done", Some(self.folder.checksums()?)));
+            .and_then(|()| self.write_facts(("done", None), Some(self.folder.checksums()?)));
         result.map_err(|failure| {
             let exit = if let Failure::Interrupted { .. } = failure { "interrupted" } else { "failed" };
             // The failure itself matters more than a folder that cannot be written.
-            if let Ok(mut facts) = self.write_facts(exit, None) {
-                facts["code"] = json!(failure.code());
-                facts["reason"] = json!(failure.to_string());
-                let _ = self.folder.set_facts(&facts);
-            }
+            let _ = self.write_facts((exit, Some(&failure)), None);
             match failure {
                 Failure::Io(reason) => {
                     let path = self.folder.path().display();
@@ -481,7 +477,12 @@ impl Session<'_> {
         Ok(run.one::<u64>("stage")? as usize)
     }
 
-    fn write_facts(&self, exit: &str, checksums: Option<Value>) -> Result<Value, Failure> {
+    /// Writes `run.json`: how far the run is, and what it failed of if it did.
+    fn write_facts(
+        &self,
+        (exit, failure): (&str, Option<&Failure>),
+        checksums: Option<Value>,
+    ) -> Result<Value, Failure> {
         let simulation = &self.model.simulation;
         let (clock, wall) = (simulation.clock(), self.begun.elapsed().as_secs_f64());
         let steps = clock.step() - self.first_step;
@@ -494,6 +495,8 @@ impl Session<'_> {
             "scene": self.folder.scene_path().display().to_string(),
             "solver": simulation.solver().name(),
             "exit": exit,
+            "code": failure.map(Failure::code),
+            "reason": failure.map(Failure::to_string),
             "simulated_seconds": clock.time(),
             "steps": clock.step(),
             "wall_seconds": wall,

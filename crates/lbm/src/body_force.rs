@@ -4,6 +4,7 @@
 //! trapezoidal rule, of second order in time \[Guo2002\]. Time is the number of steps times the step, so that splits and
 //! restarts keep every bit.
 
+use crate::collision::Physics;
 use crate::obstacle::{Domain, cell_index, cells_of};
 use crate::populations::Grid;
 use crate::real::Real;
@@ -203,7 +204,12 @@ pub(crate) struct Force<'a, T> {
     pub(crate) field: &'a ForceField<T>,
 }
 
-impl<T: Real> Force<'_, T> {
+impl<'a, T: Real> Force<'a, T> {
+    /// At the time of the physics.
+    pub(crate) fn of(physics: &Physics, field: &'a ForceField<T>) -> Self {
+        Self { uniform: physics.force, factor: physics.field_factor, field }
+    }
+
     /// Of the cell at a place.
     #[inline]
     pub(crate) fn at(&self, place: usize) -> [f64; 3] {

@@ -165,8 +165,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
 
     /// Lets open faces look at the flow as it is.
     pub(crate) fn look_at_open_faces(&mut self) {
-        let Physics { force: uniform, field_factor: factor, .. } = self.physics;
-        let force = Force { uniform, factor, field: &self.field };
+        let force = Force::of(&self.physics, &self.field);
         self.beyond.open.look::<L, T, Q>(&self.populations, force);
     }
 
@@ -211,7 +210,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
 
     /// The force on any cell at the time reached.
     pub(crate) fn force(&self) -> Force<'_, T> {
-        Force { uniform: self.physics.force, factor: self.physics.field_factor, field: &self.field }
+        Force::of(&self.physics, &self.field)
     }
 
     fn apply_boundaries(&mut self) {
@@ -219,8 +218,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         for obstacle in &mut self.beyond.obstacles {
             obstacle.apply::<L, Q>(&mut self.populations);
         }
-        let Physics { force: uniform, field_factor: factor, .. } = self.physics;
-        let force = Force { uniform, factor, field: &self.field };
+        let force = Force::of(&self.physics, &self.field);
         self.beyond.open.apply::<L, T, Q>(&mut self.populations, force);
     }
 

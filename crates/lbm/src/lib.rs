@@ -101,6 +101,7 @@ pub use lbm::{Flow, Lbm};
 pub use links::WallScheme;
 pub use obstacle::{Obstacle, Reference};
 pub use open::OpenScheme;
+pub use pages::Pages;
 pub use real::Real;
 pub use scales::FlowScales;
 pub use setup::{Face, Profile, Setup, SetupError};

@@ -8,25 +8,29 @@ use std::ops::{Deref, DerefMut};
 #[cfg(target_os = "linux")]
 const HUGE: usize = 4 << 20;
 
-/// Numbers, all zero at first.
+/// Numbers as populations lie in memory: in huge pages where there are many and the system has them.
 #[derive(Debug)]
-pub(crate) enum Pages<T> {
+pub struct Pages<T>(Kind<T>);
+
+#[derive(Debug)]
+enum Kind<T> {
     Small(Vec<T>),
     #[cfg(target_os = "linux")]
     Huge(memmap2::MmapMut),
 }
 
 impl<T: Real> Pages<T> {
-    pub(crate) fn zeroed(count: usize) -> Self {
+    /// So many numbers, all zero.
+    pub fn zeroed(count: usize) -> Self {
         #[cfg(target_os = "linux")]
         if count * size_of::<T>() >= HUGE
             && let Ok(map) = memmap2::MmapMut::map_anon(count * size_of::<T>())
         {
             // Refused on systems without huge pages, where small ones do.
             let _ = map.advise(memmap2::Advice::HugePage);
-            return Self::Huge(map);
+            return Self(Kind::Huge(map));
         }
-        Self::Small(vec![T::default(); count])
+        Self(Kind::Small(vec![T::default(); count]))
     }
 }
 
@@ -34,20 +38,20 @@ impl<T: Real> Deref for Pages<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        match self {
-            Self::Small(values) => values,
+        match &self.0 {
+            Kind::Small(values) => values,
             #[cfg(target_os = "linux")]
-            Self::Huge(map) => bytemuck::cast_slice(map),
+            Kind::Huge(map) => bytemuck::cast_slice(map),
         }
     }
 }
 
 impl<T: Real> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut [T] {
-        match self {
-            Self::Small(values) => values,
+        match &mut self.0 {
+            Kind::Small(values) => values,
             #[cfg(target_os = "linux")]
-            Self::Huge(map) => bytemuck::cast_slice_mut(map),
+            Kind::Huge(map) => bytemuck::cast_slice_mut(map),
         }
     }
 }

@@ -87,7 +87,7 @@ impl<D: Dim> CoarseFields<D> {
 
     /// Velocity \[m/s\]: momentum over density.
     pub fn velocity(&self) -> Vec<D::Vec> {
-        let nothing = (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, f64::NAN));
+        let nothing = D::Vec::splat(f64::NAN);
         self.sums.bulk.iter().map(|bulk| mean_velocity(bulk).unwrap_or(nothing)).collect()
     }
 

@@ -124,10 +124,10 @@ impl<D: Dim> CoarseGrid<D> {
     /// Corners \[m\] of the box about the grid in which a point matters whose kernel, or a branch of at most `reach`
     /// \[m\], touches the grid.
     pub(super) fn reached(&self, reach: f64) -> [D::Vec; 2] {
-        let margin = 2.0 * self.width as f64 * self.spacing + reach;
-        let along =
-            |of: &dyn Fn(usize) -> f64| (0..D::N).fold(self.low, |sum, k| sum + D::Vec::along(k, of(k)));
-        [along(&|_| -margin), along(&|axis| self.cells[axis] as f64 * self.spacing + margin)]
+        let margin = D::Vec::splat(2.0 * self.width as f64 * self.spacing + reach);
+        let size = self.cells.map(|cells| cells as f64 * self.spacing);
+        let size = D::Vec::from_slice(&size[..D::N]).expect("one component per axis");
+        [self.low - margin, self.low + size + margin]
     }
 
     /// Share of a grain at a place that is spread over the grid.

@@ -1,6 +1,7 @@
 //! Grains and branches as a grid sees them: in a periodic cell each with all images that reach into it.
 
 use super::grid::CoarseGrid;
+use crate::below::corners;
 use crate::cell::Cell;
 use crate::dem::Dem;
 use granular_core::{Dim, Linear, Vector};
@@ -32,9 +33,8 @@ impl<'a, D: Dim> Images<'a, D> {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         if let Some(cell) = cell {
             let (shares, bounds) = (cell.edges().inverse(), grid.reached(reach));
-            for corner in 0..1 << D::N {
-                let of = |axis| D::Vec::along(axis, bounds[corner >> axis & 1].component(axis));
-                let share = shares.apply((0..D::N).fold(D::Vec::ZERO, |point, axis| point + of(axis)));
+            for corner in corners::<D>(bounds[0], bounds[1]) {
+                let share = shares.apply(corner);
                 for axis in 0..D::N {
                     low[axis] = low[axis].min(share.component(axis));
                     high[axis] = high[axis].max(share.component(axis));

@@ -1,6 +1,7 @@
 //! Coarse graining in a periodic cell: it goes on across the faces, and flows as the cell does.
 
 use crate::sample::free;
+use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, FieldRef, FieldSink, Linear, Solver, SymmetricTensor, Vector};
 use granular_dem::{
     Cell, CellControl, CoarseGrid, Control, Dem, Grain, Material, MaterialId, Materials, Options,
@@ -9,10 +10,6 @@ use granular_dem::{
 const SPACING: f64 = 0.01;
 const SHEAR: f64 = 5.0;
 
-fn everywhere<D: Dim>(length: f64) -> D::Vec {
-    (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, length))
-}
-
 /// A square or cubic lattice of equal grains that fills a cell; it overlaps where the radius is above half the spacing.
 fn lattice<D: Dim>(side: usize, radius: f64) -> Dem<D> {
     let mut materials = Materials::new();
@@ -20,19 +17,19 @@ fn lattice<D: Dim>(side: usize, radius: f64) -> Dem<D> {
     let id = materials.add(material).unwrap();
     let grain = |index: usize, id: MaterialId| {
         let place = |axis: usize| (index / side.pow(axis as u32) % side) as f64 * SPACING;
-        let position = (0..D::N)
-            .fold(everywhere::<D>(0.5 * SPACING), |sum, axis| sum + D::Vec::along(axis, place(axis)));
+        let position =
+            (0..D::N).fold(D::Vec::splat(0.5 * SPACING), |sum, axis| sum + D::Vec::along(axis, place(axis)));
         Grain::at(position, radius, id)
     };
     let grains = (0..side.pow(D::N as u32)).map(|index| grain(index, id)).collect();
     let mut dem = free::<D>(materials, grains, Options::default());
-    let size = everywhere::<D>(SPACING * side as f64);
+    let size = D::Vec::splat(SPACING * side as f64);
     dem.set_cell(Cell::new(D::Vec::ZERO, size, &vec![true; D::N]).unwrap()).unwrap();
     dem
 }
 
 fn over_the_cell<D: Dim>(side: usize, width: usize) -> CoarseGrid<D> {
-    CoarseGrid::new(D::Vec::ZERO, everywhere::<D>(SPACING * side as f64), SPACING, width).unwrap()
+    CoarseGrid::new(D::Vec::ZERO, D::Vec::splat(SPACING * side as f64), SPACING, width).unwrap()
 }
 
 fn sheared<D: Dim>(side: usize) -> Dem<D> {
@@ -104,8 +101,7 @@ fn stress_across_the_faces_is_that_within() {
 #[test]
 fn a_grid_of_any_size_sees_the_same_fields() {
     let dem = sheared::<D2>(10);
-    let corner =
-        |low: f64, high: f64| CoarseGrid::new(everywhere::<D2>(low), everywhere::<D2>(high), SPACING, 1);
+    let corner = |low: f64, high: f64| CoarseGrid::new(DVec2::splat(low), DVec2::splat(high), SPACING, 1);
     for grid in [corner(-0.13, 0.27).unwrap(), corner(0.07, 0.12).unwrap()] {
         let fields = dem.coarse_fields(&grid);
         assert!(spread(&fields.density(), 2500.0 * D2::ball_volume(4.5e-3) / 1e-4) < 1e-12);

@@ -69,6 +69,11 @@ fn sizes_beyond_reason_are_refused() {
     let beside = refused([1e-3, 0.9e-9]).unwrap();
     assert!(beside.contains("smallest radius of a grain, where the largest is 0.001 m,"), "{beside}");
     assert!(beside.contains("at least a millionth of the largest"), "{beside}");
+    let beside = refused([1e-3, 5e-324]).unwrap();
+    assert!(
+        beside.contains("smallest radius of a grain, where the largest is 0.001 m, is 5e-324"),
+        "{beside}"
+    );
     for radius in [5e-324, 1e-160, 1e160] {
         let alone = refused([radius, radius]).unwrap();
         assert!(alone.contains("moment of inertia of a grain"), "{alone}");

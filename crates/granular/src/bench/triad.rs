@@ -1,5 +1,6 @@
 //! Memory bandwidth of this machine, by the triad `a = b + s c`, and by an update in place.
 
+use granular_lbm::Pages;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -28,10 +29,9 @@ pub(super) fn bandwidth() -> f64 {
 }
 
 /// Bandwidth of the pool in use \[bytes/s\] for an update in place, the best pattern there is: one number read and
-/// written per element, in huge pages where the system has them, as populations are.
+/// written per element, in the pages that populations lie in.
 pub(super) fn update_bandwidth() -> f64 {
-    let mut pages = Pages::of(3 * LENGTH);
-    let a = pages.numbers();
+    let mut a = Pages::<f64>::zeroed(3 * LENGTH);
     a.fill(1.0);
     let mut best = f64::INFINITY;
     for round in 0..ROUNDS {
@@ -46,31 +46,4 @@ pub(super) fn update_bandwidth() -> f64 {
     }
     assert!(a[LENGTH / 2] > 0.5, "the result is kept, so that it is computed");
     (6 * LENGTH * size_of::<f64>()) as f64 / best
-}
-
-/// Numbers in huge pages, or in small ones where there are no others.
-enum Pages {
-    Huge(memmap2::MmapMut),
-    Small(Vec<f64>),
-}
-
-impl Pages {
-    fn of(count: usize) -> Self {
-        match memmap2::MmapMut::map_anon(count * size_of::<f64>()) {
-            Ok(map) => {
-                #[cfg(target_os = "linux")]
-                // Refused on systems without huge pages, where small ones do.
-                let _ = map.advise(memmap2::Advice::HugePage);
-                Self::Huge(map)
-            }
-            Err(_) => Self::Small(vec![0.0; count]),
-        }
-    }
-
-    fn numbers(&mut self) -> &mut [f64] {
-        match self {
-            Self::Huge(map) => bytemuck::cast_slice_mut(map),
-            Self::Small(values) => values,
-        }
-    }
 }

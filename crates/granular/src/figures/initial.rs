@@ -185,8 +185,7 @@ fn named(walls: &Walls<'_>, reach: Reach) -> Vec<Mark> {
             (Some(stage), _) => format!("{} opens at {stage}", wall.name()),
             _ => continue,
         };
-        let alone = Scene { walls: vec![wall.clone()], ..walls.scene.clone() };
-        let lines = Walls { scene: &alone, ..*walls }.lines(-1.0, reach);
+        let lines = walls.lines_of(&[wall], reach);
         let label = |k: usize| if k == 0 { label.clone() } else { String::new() };
         let lines = lines.into_iter().enumerate();
         marks.extend(lines.map(|(k, line)| Mark {

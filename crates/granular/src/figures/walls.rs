@@ -42,10 +42,15 @@ impl Walls<'_> {
     pub(super) fn lines(&self, time: f64, reach: Reach) -> Vec<Line> {
         let stands = |wall: &&WallSpec| !self.is_open(wall, time) && (stays(wall) || time <= 0.0);
         let walls: Vec<&WallSpec> = self.scene.walls.iter().filter(stands).collect();
+        self.lines_of(&walls, reach)
+    }
+
+    /// Some walls as they stand at the start.
+    pub(super) fn lines_of(&self, walls: &[&WallSpec], reach: Reach) -> Vec<Line> {
         let mut lines: Vec<Line> = walls.iter().flat_map(|wall| self.bounded(wall)).collect();
         let [mut low, mut high] = around(reach, &lines);
         // Walls that stand beside the grains are to be seen also where these do not reach them.
-        for wall in &walls {
+        for wall in walls {
             match wall {
                 WallSpec::Floor { .. } => low[1] = low[1].min(0.0),
                 WallSpec::Left { .. } => low[0] = low[0].min(0.0),

@@ -129,8 +129,8 @@ fn servo<D: Dim>(
         (Some(force), None, None, []) => (force.value(), None),
         (None, Some(pressure), Some(area), []) => (pressure.value() * area, None),
         (None, Some(pressure), None, [_, ..]) => {
-            let walls = facing::<D>(path, walls, between, problems)?;
-            (0.0, Some(PressureBetween { pressure: pressure.value(), walls }))
+            let given = (pressure.value(), between.as_slice());
+            (0.0, Some(between_planes::<D>(path, (walls, index), given, problems)?))
         }
         _ => {
             let hint = "a force, or a pressure with the area or the walls between which it acts";
@@ -150,38 +150,37 @@ fn servo<D: Dim>(
     })
 }
 
-/// Indices of planes that face one another, from pairs of names.
-fn facing<D: Dim>(
+/// A pressure between planes that face one another, from pairs of names.
+fn between_planes<D: Dim>(
     path: &str,
-    walls: &[Wall<D>],
-    pairs: &[Vec<String>],
+    (walls, index): (&[Wall<D>], usize),
+    (pressure, pairs): (f64, &[Vec<String>]),
     problems: &mut Problems,
-) -> Option<[[usize; 2]; 2]> {
+) -> Option<PressureBetween> {
     let path = format!("{path}.between");
     if pairs.len() != D::N - 1 {
         let allowed = if D::N == 2 { "one pair of planes" } else { "two pairs of planes" };
         problems.add(path, format!("a list of {}", pairs.len()), allowed, "such as [[\"left\", \"right\"]]");
         return None;
     }
-    let mut found = [[0; 2]; 2];
-    for (indices, pair) in found.iter_mut().zip(pairs) {
-        let index = |name: &String| walls.iter().position(|wall| wall.name == *name);
-        let known: Option<Vec<usize>> = pair.iter().map(index).collect();
-        let planes = known.and_then(|known| <[usize; 2]>::try_from(known).ok()).filter(|known| {
-            let [a, b] = known.map(|index| &walls[index].shape);
-            matches!((a, b), (Shape::Plane { normal, point }, Shape::Plane { normal: against, point: other })
-                if normal.dot(*against) < -1.0 + 1e-9 && (*other - *point).dot(*normal) > 0.0)
-        });
-        let Some(planes) = planes else {
-            let names = walls.iter().filter(|wall| matches!(wall.shape, Shape::Plane { .. }));
-            let names: Vec<&str> = names.map(|wall| wall.name.as_str()).collect();
-            let allowed = format!("two planes that face one another, of: {}", names.join(", "));
-            problems.add(path, format!("[{}]", pair.join(", ")), allowed, "");
-            return None;
-        };
-        *indices = planes;
+    let place = |name: &String| walls.iter().position(|wall| wall.name == *name);
+    let mut found = PressureBetween { pressure, walls: [[0; 2]; 2] };
+    let mut known = true;
+    for (indices, pair) in found.walls.iter_mut().zip(pairs) {
+        match pair.iter().map(place).collect::<Option<Vec<_>>>().map(<[usize; 2]>::try_from) {
+            Some(Ok(pair)) => *indices = pair,
+            _ => known = false,
+        }
     }
-    Some(found)
+    if known && found.check(&walls[index].name, walls).is_ok() {
+        return Some(found);
+    }
+    let planes = walls.iter().filter(|wall| matches!(wall.shape, Shape::Plane { .. }));
+    let planes: Vec<&str> = planes.map(|wall| wall.name.as_str()).collect();
+    let named: Vec<String> = pairs.iter().map(|pair| format!("[{}]", pair.join(", "))).collect();
+    let allowed = format!("two planes that face one another, of: {}", planes.join(", "));
+    problems.add(path, named.join(", "), allowed, "");
+    None
 }
 
 /// A lattice of held grains in a box, out of place by up to `scatter` along each axis.

@@ -119,7 +119,7 @@ pub(crate) fn scatter<D: Dim>(
     })?;
     let volume: f64 = radii.iter().map(|&radius| D::ball_volume(radius)).sum();
     let side = (volume / solid_fraction).powf(1.0 / D::N as f64);
-    let size = (0..D::N).fold(D::Vec::ZERO, |size, axis| size + D::Vec::along(axis, side));
+    let size = D::Vec::splat(side);
     let places = scattered::<D>(&radii, size, seed).map_err(|error| {
         let allowed = "a lower one: grains must not overlap at the start".to_owned();
         ("sample.solid_fraction", format!("{solid_fraction}, for which {error}"), allowed)

@@ -130,7 +130,10 @@ pub(super) fn build<D: Dim>(
         options: spec.options(needs_ledger(scene)),
     };
     let mut dem = Dem::<D>::new(setup).map_err(|error| {
-        vec![SceneProblem::at_path(format!("solvers.{name}"), error.to_string(), error.allowed, "")]
+        // What is wrong with grains is not the solver's.
+        let place =
+            if error.what.contains("grain") { "sample".to_owned() } else { format!("solvers.{name}") };
+        vec![SceneProblem::at_path(place, format!("refused: {error}"), error.allowed, "")]
     })?;
     boundaries::traffic(scene, &mut dem, &of_inlets, &mut problems);
     if let Some(cell) = cell {

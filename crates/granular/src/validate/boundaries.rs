@@ -201,7 +201,7 @@ fn shaken<D: Dim>(rows: &mut Rows, side: usize, speed: f64) -> Result<(), StepEr
     let random = |chance: &mut Chance, size: f64| {
         (0..D::N).fold(D::Vec::ZERO, |v, axis| v + D::Vec::along(axis, chance.between(-size, size)))
     };
-    let middle = (0..D::N).fold(D::Vec::ZERO, |v, axis| v + D::Vec::along(axis, 0.5 * far));
+    let middle = D::Vec::splat(0.5 * far);
     let arm = D::Vec::along(0, 0.25 * far);
     let beam = Wall::segment("beam", middle - arm, middle + arm, glass).expect(FITS);
     let spin = <D::Spin as granular_core::Spin>::about_z(300.0 * speed);

@@ -29,7 +29,7 @@ fn material() -> Material {
 }
 
 fn everywhere<D: Dim>(length: f64) -> D::Vec {
-    (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, length))
+    D::Vec::splat(length)
 }
 
 /// Graded grains on a loose lattice with random velocities, between smooth walls on all sides but the top.

@@ -51,7 +51,7 @@ fn rates<D: Dim>(gradient: &Matrix<D>) -> CellControl {
 fn sample<D: Dim>(contact: ContactModel, offset: D::Vec, turn: &Matrix<D>) -> Result<Dem<D>, Failure> {
     let (count, fraction) = if D::TWISTS { (216, 0.45) } else { (196, 0.7) };
     let side = (f64::from(count) * D::ball_volume(0.5) / fraction).powf(1.0 / D::N as f64);
-    let size = (0..D::N).fold(D::Vec::ZERO, |size, axis| size + D::Vec::along(axis, side));
+    let size = D::Vec::splat(side);
     let places = scattered::<D>(&vec![0.5; count as usize], size, 1);
     let places = places.map_err(|error| Failure::Io(error.to_string()))?;
     let places = places.into_iter().map(|place| turn.apply(place) + offset);

@@ -9,7 +9,7 @@ const RAIN: &str = r#"Scene(version: 1, dimension: Plane, gravity: [0.0, -9.81],
     inlets: [(name: "in", low: ["-20 mm", "30 mm"], high: ["200 mm", "85 mm"], rate: 4000, number: 25, grading: Single("2 mm"),
         material: "g")],
     walls: [Floor(material: "g")],
-    stages: [(name: "fill", end: For("0.1 s")), (name: "rest", end: For("0.1 s"))],
+    stages: [(name: "fill", end: For("0.1 s")), (name: "rest", end: For("2 s"))],
     solvers: { "d": Dem(()) }, snapshot_every: 0.02,
     figures: [Series(path: "f", table: "s.csv", columns: ["kinetic_energy", "front"])],
     outputs: [(every: Time("1 ms"), write: Table(path: "s.csv", probes: ["kinetic_energy", "front", "height"]))])"#;
@@ -41,18 +41,10 @@ fn a_scene_without_a_grain_at_the_start_is_resumed_and_drawn() {
     let table = fs::read_to_string(scratch.path("whole/s.csv")).unwrap();
     assert!(!table.contains("inf"), "{}", &table[..200]);
     assert!(scratch.path("whole/f.svg").is_file());
-    // As if it had been interrupted: it is taken up from a snapshot of the first stage.
+    // It is taken up from a snapshot of a stage that began without a grain.
     let run = scratch.start(&["run", "scene.ron", "--quiet", "--out", "cut"]);
-    while snapshots(&scratch.path("cut")).is_empty() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    run.signal("INT");
-    let cut = run.wait();
-    if cut.code == Some(130) {
-        scratch.granular(&["resume", "cut", "--quiet"]).expect(0);
-    } else {
-        cut.expect(0);
-    }
+    run.interrupt_when(|| !snapshots(&scratch.path("cut")).is_empty()).expect(130);
+    scratch.granular(&["resume", "cut", "--quiet"]).expect(0);
     assert_same_run(&scratch.path("whole"), &scratch.path("cut"));
     scratch.granular(&["plot", "cut"]).expect(0);
 }

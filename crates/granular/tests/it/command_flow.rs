@@ -63,11 +63,7 @@ fn a_flow_has_the_same_bits_for_any_number_of_threads_and_after_an_interruption(
         run(&scratch, "whole", &edits).expect(0);
         let words = edited("part", &edits);
         let run = scratch.start(&words.iter().map(String::as_str).collect::<Vec<_>>());
-        while snapshots(&scratch.path("part")).len() < 2 {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        run.signal("INT");
-        let outcome = run.wait();
+        let outcome = run.interrupt_when(|| snapshots(&scratch.path("part")).len() >= 2);
         // A fast machine may be done before the signal comes.
         if outcome.code != Some(0) {
             outcome.expect(130);

@@ -126,3 +126,16 @@ fn a_fine_lattice_is_refused_before_it_is_built() {
     let said = soon(|| scratch.granular(&["check", "fine.ron", "--json"])).expect(3);
     assert_eq!(said.says(&["Mach number is ", "allowed: at most 0.3"]).json()["exit"], 3);
 }
+
+#[test]
+fn sizes_that_do_not_fit_together_are_told_at_the_sample() {
+    let scratch = Scratch::new("sizes");
+    let scene = r#"Scene(version: 1, dimension: Plane,
+        materials: { "g": (density: 1000, normal_stiffness: 1e5, restitution: 0.5, friction: 0.5) },
+        sample: Grains([(position: [0, 0.1], radius: "1 mm", material: "g"),
+            (position: [0.1, 0.1], radius: 5e-324, material: "g")]),
+        stages: [(name: "s", end: For("1 ms"))], solvers: { "grains": Dem(()) })"#;
+    std::fs::write(scratch.path("scene.ron"), scene).unwrap();
+    let said = "`sample` is refused: smallest radius of a grain, where the largest is 0.001 m, is 5e-324";
+    scratch.granular(&["check", "scene.ron"]).expect(2).says(&[said, "at least a millionth of the largest"]);
+}

@@ -113,24 +113,11 @@ fn a_stirred_cavity_has_the_same_bits_after_an_interruption() {
     let scratch = scratch("cavity", CAVITY);
     for stage in ["0", "1"] {
         let edit = format!("stages.{stage}.end=For(\"3 s\")");
-        let words = |out: &'static str| {
-            ["run", "stir.ron", "--quiet", "--out", out, "--set"]
-                .map(str::to_owned)
-                .into_iter()
-                .chain([edit.clone()])
-        };
-        let words = |out: &'static str| words(out).collect::<Vec<_>>();
-        let start =
-            |out: &'static str| scratch.start(&words(out).iter().map(String::as_str).collect::<Vec<_>>());
+        let start = |out: &str| scratch.start(&["run", "stir.ron", "--quiet", "--out", out, "--set", &edit]);
         start("whole").wait().expect(0);
-        let run = start("part");
-        while !scratch.path("part/series.csv").exists()
-            || fs::read_to_string(scratch.path("part/series.csv")).unwrap().lines().count() < 45
-        {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        run.signal("INT");
-        let outcome = run.wait();
+        let rows =
+            || fs::read_to_string(scratch.path("part/series.csv")).map_or(0, |text| text.lines().count());
+        let outcome = start("part").interrupt_when(|| rows() >= 45);
         // A fast machine may be done before the signal comes.
         if outcome.code != Some(0) {
             outcome.expect(130);

@@ -91,6 +91,15 @@ impl Running {
         self.child.try_wait().unwrap().is_none()
     }
 
+    /// Interrupts the command once it is `ready`, or has ended before, and waits for its end.
+    pub(crate) fn interrupt_when(mut self, ready: impl Fn() -> bool) -> Outcome {
+        while !ready() && self.is_running() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        self.signal("INT");
+        self.wait()
+    }
+
     /// Waits for the end; a hang is a failure of the test.
     pub(crate) fn wait(mut self) -> Outcome {
         let begun = Instant::now();
