@@ -8,11 +8,11 @@ mod sweep;
 mod validate;
 
 use clap::{Args, Parser, Subcommand};
-use granular::failure::Failure;
-use granular::run::Interrupt;
-use granular::scene_file::SceneText;
-use granular::{check, folder, machine, run};
 use granular_core::Shown;
+use granular_driver::failure::Failure;
+use granular_driver::run::Interrupt;
+use granular_driver::scene_file::SceneText;
+use granular_driver::{check, folder, machine, run};
 use serde_json::{Value, json};
 use signal_hook::iterator::Signals;
 use std::io::Write;
@@ -322,7 +322,7 @@ fn failure_json(failure: &Failure) -> Value {
 
 /// Prints a template, or lists all by the first line of each.
 fn new(common: &Common, template: Option<&str>) -> Result<(), Failure> {
-    let templates = granular::TEMPLATES;
+    let templates = granular_driver::TEMPLATES;
     let Some(name) = template else {
         let titles = templates
             .iter()
@@ -367,9 +367,9 @@ fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
 fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
     let (_, model) = check::read(&SceneText::read(path)?)?;
     let solver = model.simulation.solver();
-    let all = granular::model::all_shown(solver);
+    let all = granular_driver::model::all_shown(solver);
     let mut list: Vec<_> = all.into_iter().map(|s| (format!("{:?}", s.kind), s)).collect();
-    list.extend(granular::model::shown_on_grids(solver).into_iter().map(|s| ("Grid".to_owned(), s)));
+    list.extend(granular_driver::model::shown_on_grids(solver).into_iter().map(|s| ("Grid".to_owned(), s)));
     let rows: Vec<Value> = list
         .iter()
         .map(|(kind, s)| json!({ "name": s.name, "unit": s.unit, "kind": kind, "meaning": s.meaning }))

@@ -2,7 +2,8 @@
 
 use crate::body_force::{self, BodyForce, Force, ForceField};
 use crate::boundary::{Beyond, Builder};
-use crate::collision::{Parameters, Parts, Physics, With};
+use crate::choice::{Steps, step_function};
+use crate::collision::{Parameters, Physics};
 use crate::lattice::Lattice;
 use crate::links::Cuts;
 use crate::named::SetFace;
@@ -21,13 +22,6 @@ const BEYOND: f64 = 4.0 / 9.0;
 
 /// Fewest steps at once for which links are sorted for two steps together.
 const PAIRED: u64 = 4;
-
-type StepFunction<T> = fn(&mut Populations<T>, &Runs, &ForceField<T>, &Parameters<T>, T) -> bool;
-type PairFunction<T> =
-    fn(&mut Populations<T>, &Runs, &RowLinks<T>, &ForceField<T>, &[Parameters<T>; 2], T) -> bool;
-
-/// One step, and two in one pass.
-type Steps<T> = (StepFunction<T>, PairFunction<T>);
 
 /// A fluid on a lattice. `T` is the type in which populations are stored and computed.
 pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
@@ -391,26 +385,4 @@ fn started<L: Lattice<Q>, const Q: usize>(
         *f += L::WEIGHTS[i] * (stress - 1.5 * dot(L::VELOCITIES[i], force));
     }
     f
-}
-
-/// The step compiled for the parts that are on.
-fn step_function<L: Lattice<Q>, T: Real, const Q: usize>(physics: &Physics) -> Steps<T> {
-    fn of<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>() -> Steps<T> {
-        (Populations::step::<L, P, Q>, Populations::two_steps::<L, P, Q>)
-    }
-    fn forced<L: Lattice<Q>, T: Real, const G: bool, const C: bool, const Q: usize>(
-        physics: &Physics,
-    ) -> Steps<T> {
-        match (physics.has_force(), physics.has_field()) {
-            (false, _) => of::<L, T, With<G, false, C, false>, Q>(),
-            (true, false) => of::<L, T, With<G, true, C, false>, Q>(),
-            (true, true) => of::<L, T, With<G, true, C, true>, Q>(),
-        }
-    }
-    match (physics.has_ghosts(), physics.has_closure()) {
-        (false, false) => forced::<L, T, false, false, Q>(physics),
-        (false, true) => forced::<L, T, false, true, Q>(physics),
-        (true, false) => forced::<L, T, true, false, Q>(physics),
-        (true, true) => forced::<L, T, true, true, Q>(physics),
-    }
 }

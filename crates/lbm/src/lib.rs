@@ -56,6 +56,7 @@ mod advice;
 mod bitmap;
 mod body_force;
 mod boundary;
+mod choice;
 mod collision;
 mod edges;
 mod flow_field;

@@ -2,9 +2,9 @@
 
 use super::{Common, show};
 use clap::{Args, Subcommand, ValueEnum};
-use granular::bench::{self, Precision, lattice, operators, speed, tessellate};
-use granular::failure::Failure;
-use granular::machine;
+use granular_driver::failure::Failure;
+use granular_driver::machine;
+use granular_studies::bench::{self, Precision, lattice, operators, speed, tessellate};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,8 @@
 
 use super::{Common, show};
 use clap::Args;
-use granular::failure::Failure;
-use granular::{calibrate, run, sweep};
+use granular_driver::failure::Failure;
+use granular_driver::{calibrate, run, sweep};
 use serde_json::json;
 use std::path::PathBuf;
 

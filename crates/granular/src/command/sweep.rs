@@ -2,8 +2,8 @@
 
 use super::{Common, default_folder, interrupt, show};
 use clap::Args;
-use granular::failure::Failure;
-use granular::sweep::{Plan, Request, Work, array_script};
+use granular_driver::failure::Failure;
+use granular_driver::sweep::{Plan, Request, Work, array_script};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,8 @@
 
 use super::{Common, show};
 use clap::builder::PossibleValuesParser;
-use granular::failure::Failure;
-use granular::validate::{self, Effort, stability};
+use granular_driver::failure::Failure;
+use granular_studies::validate::{self, Effort, stability};
 use serde_json::json;
 
 /// Flags of `granular validate`.

@@ -172,8 +172,8 @@ fn templates_are_the_examples_and_pass_the_check() {
         .unwrap()
         .filter_map(|entry| fs::read_to_string(entry.unwrap().path().join("scene.ron")).ok())
         .collect();
-    assert_eq!(list.lines().count(), granular::TEMPLATES.len());
-    for (name, _) in granular::TEMPLATES {
+    assert_eq!(list.lines().count(), granular_driver::TEMPLATES.len());
+    for (name, _) in granular_driver::TEMPLATES {
         let line = list.lines().find(|line| line.starts_with(name)).expect("the template is listed");
         assert!(line.len() > name.len() + 10, "`{line}` says nothing");
         let text = scratch.granular(&["new", name]).expect(0).out;

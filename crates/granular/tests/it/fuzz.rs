@@ -8,10 +8,10 @@ mod mutate;
 mod text;
 
 use crate::support::{SMALL, Scratch, workspace};
-use granular::check;
-use granular::failure::Failure;
-use granular::scene_file::SceneText;
-use granular::sweep::Axis;
+use granular_driver::check;
+use granular_driver::failure::Failure;
+use granular_driver::scene_file::SceneText;
+use granular_driver::sweep::Axis;
 use mutate::{Base, Case};
 use std::collections::BTreeMap;
 use std::fs;
@@ -238,7 +238,7 @@ fn tried(case: &Case) -> Result<String, String> {
 fn bases(scratch: &Scratch) -> Vec<Base> {
     let mut bases = Vec::new();
     let mut add = |name: String, text: &str| bases.push(Base::of(name, text));
-    for (name, text) in granular::TEMPLATES {
+    for (name, text) in granular_driver::TEMPLATES {
         add(scratch.path(name).display().to_string(), text);
     }
     fs::write(scratch.path("pyramid.stl"), crate::command_boundaries::PYRAMID)

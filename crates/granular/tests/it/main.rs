@@ -1,4 +1,4 @@
-//! All integration tests of the driver, in one binary: linking is what takes time.
+//! All tests of the command, in one binary: linking is what takes time.
 
 // Helpers of tests may fail as tests do.
 #![allow(clippy::unwrap_used)]
@@ -17,11 +17,10 @@ mod command_limits;
 mod command_push;
 mod command_sample;
 mod command_snapshots;
+mod command_stability;
 mod command_stir;
 mod command_sweep;
 mod fuzz;
 mod scenes;
-mod stability;
 mod support;
-mod validation;
 mod workspace;

@@ -1,8 +1,8 @@
 //! The scenes of `examples/`, run shortened, and the reference of all that a scene may say.
 
 use crate::support::{Scratch, workspace};
-use granular::scene::{Scene, Writer};
-use granular::scene_file::{SceneText, reference};
+use granular_driver::scene::{Scene, Writer};
+use granular_driver::scene_file::{SceneText, reference};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -247,7 +247,7 @@ All that a scene file may say; the file is [RON](https://github.com/ron-rs/ron).
 a text such as `\"1.15 mm\"` with [these units](units.md); a wrong unit is an error. `granular new` prints scenes to start from,
 `granular check` says what is wrong with one, and `--set path=value` changes a value on the command line.
 
-This page is generated from the comments in `crates/granular/src/scene.rs`, `scene/` beside it, and `spec.rs` of the solver crates: change
+This page is generated from the comments in `crates/driver/src/scene.rs`, `scene/` beside it, and `spec.rs` of the solver crates: change
 those and run `GRANULAR_UPDATE=1 cargo test -p granular scene_reference`.";
 
 #[test]

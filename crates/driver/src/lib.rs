@@ -1,0 +1,40 @@
+//! From one scene file to a run: the library behind the `granular` command.
+//!
+//! A [`scene::Scene`] is read from RON by [`scene_file`], checked and built into a
+//! [`model::Model`], and run stage by stage.
+
+pub mod calibrate;
+pub mod chance;
+pub mod check;
+mod effort;
+pub mod failure;
+pub mod figures;
+pub mod folder;
+mod json;
+mod lock;
+pub mod machine;
+pub mod model;
+pub mod observers;
+pub mod parallel;
+pub mod probes;
+mod progress;
+pub mod run;
+mod sample_file;
+pub mod scene;
+pub mod scene_file;
+pub mod statistics;
+pub mod sweep;
+pub mod voronoi;
+
+pub use effort::Effort;
+
+/// Scenes to start from: name and text. The first line of each is a comment that says what it is.
+pub const TEMPLATES: &[(&str, &str)] = &[
+    ("cavity", include_str!("../templates/cavity.ron")),
+    ("channel-flow", include_str!("../templates/channel-flow.ron")),
+    ("column-collapse", include_str!("../templates/column-collapse.ron")),
+    ("cylinder", include_str!("../templates/cylinder.ron")),
+    ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
+    ("sample", include_str!("../templates/sample.ron")),
+    ("slope-impact", include_str!("../templates/slope-impact.ron")),
+];
