@@ -15,7 +15,6 @@ mod figure;
 mod fit;
 mod material;
 mod plan;
-mod sheared;
 mod table;
 
 pub use figure::{figure, plot};
@@ -24,10 +23,10 @@ pub use plan::Plan;
 pub use table::table;
 
 use crate::failure::Failure;
+use crate::methods::dem::sheared::{self, Flow, Stiffness};
 use crate::parallel;
 use crate::scene::{Dimension, Scene};
 use granular_core::{D2, D3, Dim};
-use sheared::{Flow, Stiffness};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Largest inertial number that counts as slow: the critical state.

@@ -2,11 +2,10 @@
 
 use crate::failure::Failure;
 use crate::figures::{self, Extents};
-use crate::model::{self, Action, Model};
+use crate::model::{self, Model};
 use crate::progress::duration;
-use crate::scene::{Scene, SolverSpec, Stage};
+use crate::scene::{Scene, Stage};
 use crate::scene_file::{SceneProblem, SceneText};
-use crate::voronoi;
 use granular_core::{Limits, Memory, StepRule};
 use serde_json::{Value, json};
 use std::fmt;
@@ -66,7 +65,7 @@ fn built(scene: Scene, text: &SceneText) -> Result<(Scene, Model), Failure> {
 /// The step of each stage: its own, that of the solver, or the recommended one \[s\].
 pub(crate) fn steps(scene: &Scene, model: &Model, limits: &Limits) -> Vec<f64> {
     let recommended = limits.recommended().map_or(1e-3, |limit| limit.dt);
-    let default = model.time_step.unwrap_or(recommended);
+    let default = model.time_step().unwrap_or(recommended);
     scene.stages.iter().map(|stage| stage.time_step.map_or(default, |step| step.value())).collect()
 }
 
@@ -77,16 +76,8 @@ pub fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<String>
     let steps = steps(scene, model, &limits);
     let mut problems = Vec::new();
     if let Some(largest) = limits.largest_allowed() {
-        let solver = scene.solvers.keys().next().map_or("", String::as_str);
         for (k, (stage, &dt)) in scene.stages.iter().zip(&steps).enumerate() {
-            let path = match stage.time_step {
-                Some(_) => format!("stages.{k}.time_step"),
-                None if model.time_step.is_some() => format!("solvers.{solver}.time_step"),
-                None if matches!(scene.solvers.values().next(), Some(SolverSpec::Lbm(_))) => {
-                    format!("solvers.{solver}.step")
-                }
-                None => format!("solvers.{solver}.steps_per_contact"),
-            };
+            let path = key_of_step(scene, model, k);
             if dt > largest.dt {
                 problems.push(format!(
                     "`{path}`: a step of {dt:.4e} s in stage `{}`; allowed: at most {:.4e} s, the limit of {} \
@@ -96,9 +87,22 @@ pub fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<String>
             }
         }
     }
-    problems.extend(model::crowded_inlets(scene, &steps));
+    problems.extend(model.members.iter().flat_map(|member| member.refusals(scene, &steps)));
     problems.extend(broken_bounds(&limits));
     (limits, steps, problems)
+}
+
+/// Where the scene chooses the step of a stage.
+fn key_of_step(scene: &Scene, model: &Model, stage: usize) -> String {
+    if scene.stages[stage].time_step.is_some() {
+        return format!("stages.{stage}.time_step");
+    }
+    let chooses = model.members.iter().find(|member| member.time_step().is_some());
+    match (chooses, scene.solvers.iter().next()) {
+        (Some(member), _) => format!("solvers.{}.time_step", member.name()),
+        (None, Some((name, solver))) => format!("solvers.{name}.{}", solver.step_key()),
+        (None, None) => "solvers".to_owned(),
+    }
 }
 
 /// The bounds that refuse a run.
@@ -156,14 +160,14 @@ fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result
     let (scene, mut model) = read_to_run(text)?;
     let drawing = drawing.map(|path| figures::draw_initial(&scene, &model, path)).transpose()?;
     let sample = Extents::of(model.simulation.solver());
-    let mut warnings = figures::times_beyond(&scene, model.column);
-    warnings.extend(sample.and_then(|sample| apart(&sample, figures::ends_of_walls(&scene, model.column))));
+    let mut warnings = figures::times_beyond(&scene, model.column());
+    warnings.extend(sample.and_then(|sample| apart(&sample, figures::ends_of_walls(&scene, model.column()))));
     let (limits, steps, problems) = limits_of(&scene, &model);
     // Measuring the speed lets grains come in.
     let size = model.simulation.solver().size();
     let mut memory = model.simulation.solver().memory();
-    if voronoi::is_unused(&scene, model.simulation.solver()) {
-        memory.left_out.push("Voronoi cells: no output asks for them".to_owned());
+    for member in &model.members {
+        memory.left_out.extend(member.left_out(&scene, &model.simulation));
     }
     let stages: Vec<(String, f64, f64)> = scene
         .stages
@@ -173,7 +177,8 @@ fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result
         .collect();
     let count: f64 = stages.iter().map(|(_, dt, longest)| longest / dt).sum();
     let pushes = pushes(&scene, &model);
-    warnings.extend(model::warnings(&scene, &model));
+    let of_members = model.members.iter().flat_map(|member| member.warnings(&scene, &model.simulation));
+    warnings.extend(of_members);
     let estimated_seconds =
         if problems.is_empty() { count * seconds_per_step(&mut model, steps[0], probe) } else { f64::NAN };
     Ok(Report {
@@ -194,14 +199,14 @@ fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result
     })
 }
 
-/// What pushes will do, by stage.
+/// What solvers will do at the start of stages, by stage.
 fn pushes(scene: &Scene, model: &Model) -> Vec<(String, String)> {
-    let solver = model.simulation.solver();
-    let of_stage = |(stage, actions): (&Stage, &Vec<Action>)| {
-        let texts = actions.iter().filter_map(|action| model::push::described(action, solver));
-        texts.map(|text| (stage.name.clone(), text)).collect::<Vec<_>>()
+    let of_stage = |(k, stage): (usize, &Stage)| {
+        let members = model.members.iter();
+        let lines = members.flat_map(move |member| member.announced(&model.simulation, k));
+        lines.map(|text| (stage.name.clone(), text)).collect::<Vec<_>>()
     };
-    scene.stages.iter().zip(&model.stages).flat_map(of_stage).collect()
+    scene.stages.iter().enumerate().flat_map(of_stage).collect()
 }
 
 /// Wall time of one step, measured.

@@ -16,13 +16,14 @@ mod walls;
 
 use crate::failure::Failure;
 use crate::folder::RunFolder;
-use crate::model::ColumnSize;
+use crate::methods::Member;
+use crate::model::{ColumnSize, Model};
 use crate::observers::number_of;
-use crate::run::StageRecord;
+use crate::run::{RecordedStage, StageRecord};
 use crate::scene::{FigureSpec, Scene};
 pub use column::running_median;
 use frames::Frames;
-use granular_core::{ShownAs, Simulation};
+use granular_core::ShownAs;
 use granular_io::{Figure, Table, read_table};
 pub(crate) use initial::{Extents, draw as draw_initial, ends_of_walls};
 use serde_json::{Value, json};
@@ -57,12 +58,13 @@ impl Drawn {
 pub fn draw(
     scene: &Scene,
     folder: &RunFolder,
-    records: &[StageRecord],
+    records: &[RecordedStage],
     column: Option<ColumnSize>,
 ) -> Result<Drawn, Failure> {
-    let run = Run { scene, folder, records, column };
     let mut drawn = Drawn::default();
     for (k, spec) in scene.figures.iter().enumerate() {
+        let records = &seen_by(scene, records, spec);
+        let run = Run { scene, folder, records, column };
         let (place, name) = (format!("figures.{k}"), spec.path());
         match run.figure(spec) {
             Ok((figure, left_out)) => {
@@ -79,6 +81,14 @@ pub fn draw(
         }
     }
     Ok(drawn)
+}
+
+/// Stages as the solver saw them whose output a figure draws.
+fn seen_by(scene: &Scene, records: &[RecordedStage], spec: &FigureSpec) -> Vec<StageRecord> {
+    let path = spec.needs("front").output;
+    let output = scene.outputs.iter().find(|output| output.write.path() == path);
+    let of = output.and_then(|output| output.of.as_ref()).or_else(|| scene.solvers.keys().next());
+    records.iter().map(|record| record.of(of.map_or("", String::as_str))).collect()
 }
 
 /// A run whose figures are drawn.
@@ -228,49 +238,49 @@ pub(crate) struct Metric {
     pub(crate) value: f64,
 }
 
-/// What the run measured.
+/// What the run measured. Among several solvers, numbers of each have its name in front: `grains.front`.
 pub(crate) fn metrics(
     scene: &Scene,
-    simulation: &Simulation,
-    (folder, records): (&RunFolder, &[StageRecord]),
-    column: Option<ColumnSize>,
+    model: &Model,
+    (folder, records): (&RunFolder, &[RecordedStage]),
 ) -> Vec<Metric> {
     let mut metrics = Vec::new();
-    let mut add = |name: &str, unit, value: Option<f64>| {
-        metrics.extend(value.map(|value| Metric { name: name.to_owned(), unit, value }));
-    };
-    for shown in simulation.solver().shown() {
-        if shown.kind == ShownAs::Number && is_metric(&shown.name) {
-            let number = number_of(simulation, &shown.name).filter(|number| number.is_finite());
-            add(&shown.name, shown.unit, number);
-        }
-    }
-    if let (Some(column), Some(release)) = (column.filter(|_| spreads(scene)), release_of(scene, records)) {
-        add("aspect_ratio", "1", Some(release.height / column.width));
-        let front = number_of(simulation, column.front());
-        add("runout", "1", front.map(|front| (front - column.width) / column.width));
-        let height = number_of(simulation, "height");
-        add("final_height_over_width", "1", height.map(|height| height / column.width));
-        add("duration_unit", "s", gravity_time(scene, release.height));
+    for member in &model.members {
+        let own = of_member(scene, (model, &**member), records);
+        let name =
+            |name: String| if model.members.len() > 1 { format!("{}.{name}", member.name()) } else { name };
+        metrics.extend(own.into_iter().map(|metric| Metric { name: name(metric.name), ..metric }));
     }
     metrics.extend(fluid::peaks(scene, folder, records));
     metrics.extend(impact::metrics(scene, folder, records));
     metrics
 }
 
-/// Whether the last value of a number that the solver shows belongs to the result.
-fn is_metric(name: &str) -> bool {
-    let named = [
-        "front",
-        "height",
-        "largest_overlap",
-        "unconnected",
-        "largest_speed",
-        "mass_excess",
-        "energy_residual",
-    ];
-    let begins = ["drag_coefficient_of_", "lift_coefficient_of_", "pressure_at_", "velocity_at_"];
-    named.contains(&name) || begins.iter().any(|begin| name.starts_with(begin))
+/// What the run measured of one solver.
+fn of_member(
+    scene: &Scene,
+    (model, member): (&Model, &dyn Member),
+    records: &[RecordedStage],
+) -> Vec<Metric> {
+    let number = |name: &str| number_of(member, &model.simulation, name);
+    let mut metrics = Vec::new();
+    let mut add = |name: &str, unit, value: Option<f64>| {
+        metrics.extend(value.map(|value| Metric { name: name.to_owned(), unit, value }));
+    };
+    for shown in member.solver(&model.simulation).shown() {
+        if shown.kind == ShownAs::Number && member.is_metric(&shown.name) {
+            add(&shown.name, shown.unit, number(&shown.name).filter(|number| number.is_finite()));
+        }
+    }
+    let records: Vec<StageRecord> = records.iter().map(|record| record.of(member.name())).collect();
+    let column = member.column().filter(|_| spreads(scene));
+    if let (Some(column), Some(release)) = (column, release_of(scene, &records)) {
+        add("aspect_ratio", "1", Some(release.height / column.width));
+        add("runout", "1", number(column.front()).map(|front| (front - column.width) / column.width));
+        add("final_height_over_width", "1", number("height").map(|height| height / column.width));
+        add("duration_unit", "s", gravity_time(scene, release.height));
+    }
+    metrics
 }
 
 /// The stage at whose start a gate opens, or the last one.

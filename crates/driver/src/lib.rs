@@ -13,18 +13,16 @@ pub mod folder;
 mod json;
 mod lock;
 pub mod machine;
+pub mod methods;
 pub mod model;
 pub mod observers;
 pub mod parallel;
-pub mod probes;
 mod progress;
 pub mod run;
-mod sample_file;
 pub mod scene;
 pub mod scene_file;
 pub mod statistics;
 pub mod sweep;
-pub mod voronoi;
 
 pub use effort::Effort;
 

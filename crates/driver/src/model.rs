@@ -1,42 +1,64 @@
-//! From a scene to a simulation: all checks that need no step, then the build by the method of the scene.
+//! From a scene to a simulation: all checks that need no step, then the build by the methods of the scene.
 
-mod boundaries;
-mod cell;
-mod fluid;
-mod grains;
 mod outputs;
-pub(crate) mod push;
-mod region;
-mod sample;
-mod walls;
-
-pub(crate) use boundaries::crowded_inlets;
-pub(crate) use grains::{NamedMaterials, Whereabouts};
-pub use outputs::{all_shown, shown_on_grids};
-pub use push::{PushAction, PushRecord};
 
 use crate::failure::Failure;
-use crate::scene::{Dimension, End, Scene, SolverSpec};
+use crate::methods::{self, Building, Member, Notes};
+use crate::scene::{Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Measured, Unit};
-use granular_core::{D2, D3, Dim, Limits, Simulation, Solver, Vector};
-use granular_dem::MaterialId;
-use granular_lbm::{D2Q9, D3Q19};
+use granular_core::{D2, D3, Dim, Limits, Simulation, Vector};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scene that was checked and built.
 #[derive(Debug)]
 pub struct Model {
-    /// The solver with its clock, before the first step.
+    /// The solvers with their clock, before the first step.
     pub simulation: Simulation,
-    /// What happens at the start of each stage, in their order.
-    pub stages: Vec<Vec<Action>>,
-    /// Step that the solver takes unless a stage chooses its own \[s\]; `None` for the recommended one.
-    pub time_step: Option<f64>,
-    /// Width and height asked for, when the sample is a column \[m\].
-    pub column: Option<ColumnSize>,
+    /// The solvers that the scene names, in the order of their names.
+    pub members: Vec<Arc<dyn Member>>,
     /// Axis that points up.
     pub up: usize,
+}
+
+impl Model {
+    /// The solver of this name; the first one without a name.
+    ///
+    /// # Panics
+    /// When there is none of this name: a check has refused such scenes.
+    pub fn member(&self, name: Option<&str>) -> &Arc<dyn Member> {
+        let mut members = self.members.iter();
+        match name {
+            None => &self.members[0],
+            Some(name) => {
+                members.find(|member| member.name() == name).expect("the name was checked at build")
+            }
+        }
+    }
+
+    /// A number that the first solver shows which has it.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        let mut members = self.members.iter();
+        members.find_map(|member| crate::observers::number_of(&**member, &self.simulation, name))
+    }
+
+    /// Size of the column that the sample is \[m\], if it is one.
+    pub fn column(&self) -> Option<ColumnSize> {
+        self.members.iter().find_map(|member| member.column())
+    }
+
+    /// Makes all changes at the start of a stage. Returns what happened, by solver.
+    pub fn begin(&mut self, stage: usize) -> Vec<(String, Notes)> {
+        let Self { simulation, members, .. } = self;
+        members.iter().map(|member| (member.name().to_owned(), member.begin(simulation, stage))).collect()
+    }
+
+    /// Step that the solver takes unless a stage chooses its own \[s\]; `None` for the recommended one.
+    pub(crate) fn time_step(&self) -> Option<f64> {
+        self.members.iter().filter_map(|member| member.time_step()).reduce(f64::min)
+    }
 }
 
 /// Size of a column \[m\].
@@ -68,48 +90,39 @@ impl ColumnSize {
     }
 }
 
-/// A change of the solver between stages.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Action {
-    /// Friction of a material.
-    Friction(MaterialId, f64),
+/// What the pushes at the start of a stage did, and the units in which impacts are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PushRecord {
+    /// Kinetic energy given \[J; J/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub energy: f64,
+    /// Momentum given along the direction \[kg m/s; kg/s in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub momentum: f64,
+    /// Velocity given to the grains that were moved fastest \[m/s\].
+    #[serde(with = "crate::json::number")]
+    pub speed: f64,
+    /// Mean diameter of the grains \[m\].
+    #[serde(with = "crate::json::number")]
+    pub diameter: f64,
+    /// Mass of all grains \[kg; kg/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub mass: f64,
     /// Gravity \[m/s^2\].
-    Gravity(Vec<f64>),
-    /// Velocity of a face of the fluid by its name \[m/s\].
-    FaceVelocity(String, Vec<f64>),
-    /// Spin of an obstacle in the fluid by its name \[1/s\], about x, y and z.
-    ObstacleSpin(String, [f64; 3]),
-    /// All velocities become zero.
-    StopMotion,
-    /// All grains get a velocity.
-    Push(PushAction),
-    /// A shaking begins, or ends.
-    Shake(Option<Shake>),
-    /// A wall opens or closes.
-    Wall(String, bool),
-    /// A moving wall or an inlet starts or halts.
-    Moving(String, bool),
-    /// What drives the periodic cell.
-    Cell(granular_dem::CellControl),
-}
-
-/// An oscillating acceleration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shake {
-    /// Largest acceleration, one component per axis \[m/s^2\].
-    pub acceleration: Vec<f64>,
-    /// Frequency at the start and at the end of a pass \[Hz\].
-    pub frequency: [f64; 2],
-    /// Duration of a pass \[s\].
-    pub pass: f64,
+    #[serde(with = "crate::json::number")]
+    pub gravity: f64,
+    /// Potential energy of the grains above the origin \[J; J/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub potential: f64,
 }
 
 /// Collects problems by scene path.
 #[derive(Debug, Default)]
-pub(crate) struct Problems(pub(crate) Vec<SceneProblem>);
+pub struct Problems(pub(crate) Vec<SceneProblem>);
 
 impl Problems {
-    pub(crate) fn add(
+    /// Adds what stands at a place of the scene, what may, and how to put it right.
+    pub fn add(
         &mut self,
         path: impl Into<String>,
         value: impl std::fmt::Display,
@@ -120,7 +133,7 @@ impl Problems {
     }
 
     /// A vector of the right number of components.
-    pub(crate) fn vector<D: Dim, U: Unit>(&mut self, path: &str, values: &[Measured<U>]) -> Option<D::Vec> {
+    pub fn vector<D: Dim, U: Unit>(&mut self, path: &str, values: &[Measured<U>]) -> Option<D::Vec> {
         let numbers: Vec<f64> = values.iter().map(|value| value.value()).collect();
         let vector = D::Vec::from_slice(&numbers);
         if vector.is_none() {
@@ -141,6 +154,11 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Stri
     near.map_or(String::new(), |(_, other)| format!("did you mean `{other}`?"))
 }
 
+/// A key as a scene path writes it: one with a dot needs quotes.
+pub(crate) fn quoted(key: &str) -> String {
+    if key.contains(['.', '=', '[']) { format!("\"{key}\"") } else { key.to_owned() }
+}
+
 /// Builds the simulation of a scene.
 ///
 /// # Errors
@@ -149,54 +167,36 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     let mut problems = Problems::default();
     check_frame(scene, &mut problems);
     outputs::check_files(scene, &mut problems);
-    if scene.solvers.len() != 1 {
+    if scene.solvers.is_empty() {
         let allowed =
-            "exactly one, such as { \"grains\": Dem(()) } or { \"water\": Lbm((spacing: \"1 mm\")) }";
-        problems.add("solvers", format!("a map of {}", scene.solvers.len()), allowed, "");
+            "one or more, such as { \"grains\": Dem(()) } or { \"water\": Lbm((spacing: \"1 mm\")) }";
+        problems.add("solvers", "an empty map", allowed, "");
+        return Err(problems.0);
     }
-    let Some((name, solver)) = scene.solvers.iter().next() else { return Err(problems.0) };
-    match (scene.dimension, solver) {
-        (Dimension::Plane, SolverSpec::Dem(spec)) => grains::build::<D2>(scene, name, spec, problems),
-        (Dimension::Space, SolverSpec::Dem(spec)) => grains::build::<D3>(scene, name, spec, problems),
-        (Dimension::Plane, SolverSpec::Lbm(spec)) => fluid::build::<D2Q9, 9>(scene, name, spec, problems),
-        (Dimension::Space, SolverSpec::Lbm(spec)) => fluid::build::<D3Q19, 19>(scene, name, spec, problems),
+    methods::refuse_unused(scene, &mut problems);
+    let (mut building, mut members) = (Building::default(), Vec::new());
+    for (name, solver) in &scene.solvers {
+        members.extend(solver.method().build(scene, name, &mut building, &mut problems));
     }
+    let simulation = building.done().filter(|_| problems.0.is_empty());
+    let Some(simulation) = simulation else { return Err(problems.0) };
+    let up = if scene.dimension == Dimension::Plane { D2::UP } else { D3::UP };
+    let model = Model { simulation, members, up };
+    outputs::check_names(scene, &model, &mut problems);
+    if problems.0.is_empty() { Ok(model) } else { Err(problems.0) }
 }
 
-/// Limits of a fluid of so many cells that building it takes long; nothing for other scenes, and for those that are wrong.
+/// Limits that can be told of a scene that takes long to build; nothing for other scenes, and for those that are wrong.
 pub(crate) fn early_limits(scene: &Scene) -> Option<Limits> {
-    match (scene.dimension, scene.solvers.iter().next()?) {
-        (Dimension::Plane, (name, SolverSpec::Lbm(spec))) => {
-            fluid::early_limits::<D2Q9, 9>(scene, name, spec)
-        }
-        (Dimension::Space, (name, SolverSpec::Lbm(spec))) => {
-            fluid::early_limits::<D3Q19, 19>(scene, name, spec)
-        }
-        _ => None,
-    }
+    scene.solvers.iter().find_map(|(name, solver)| solver.method().early_limits(scene, name))
 }
 
-/// Makes all changes at the start of a stage; the solver is the one that [`build`] made. Returns what its pushes did, if there are any.
-pub fn begin(actions: &[Action], solver: &mut dyn Solver) -> Option<PushRecord> {
-    let mut pushed = None;
-    for action in actions {
-        grains::apply(action, solver, &mut pushed);
-        fluid::apply(action, solver);
-    }
-    pushed
-}
-
-/// What a check says of a scene that can be run, and of which little will come.
-pub(crate) fn warnings(scene: &Scene, model: &Model) -> Vec<String> {
-    grains::falling::warnings(scene, model.simulation.solver())
-}
-
-/// Saves the grains as they are now, as a sample for other scenes.
+/// Saves the state as it is now as a sample for other scenes.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub(crate) fn save_sample(scene: &Scene, model: &Model, path: &Path) -> Result<(), Failure> {
-    grains::save_sample(scene, model, path)
+    model.member(None).save_sample(scene, &model.simulation, path)
 }
 
 /// Checks that need neither dimension nor solver.

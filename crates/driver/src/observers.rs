@@ -8,18 +8,16 @@ mod source;
 mod tracks;
 
 pub(crate) use profile::Line;
-pub(crate) use source::Grid;
 
 use crate::failure::Failure;
-use crate::model::{self, Whereabouts};
-use crate::probes;
-use crate::scene::{EverySpec, Output, Writer};
-use crate::voronoi;
+use crate::methods::Member;
+use crate::model::Model;
+use crate::scene::{End, EverySpec, Output, Writer};
 use granular_core::{
-    Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, Shown, ShownAs, Simulation,
-    SnapshotError,
+    Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, ShownAs, Simulation, SnapshotError,
 };
 use granular_io::{Collection, write_fields, write_links_vtp};
+use granular_tessellate::FREE_SURFACE;
 use series::Series;
 use source::Source;
 use std::path::{Path, PathBuf};
@@ -32,10 +30,10 @@ use std::time::Duration;
 pub(crate) fn of_output(
     output: &Output,
     folder: &Path,
-    simulation: &Simulation,
+    model: &Model,
     fresh: bool,
 ) -> Result<Scheduled, Failure> {
-    let shown = model::all_shown(simulation.solver());
+    let (member, simulation) = (model.member(output.of.as_deref()), &model.simulation);
     let every = match output.every {
         EverySpec::Time(time) => Every::Time(time.value()),
         EverySpec::Steps(steps) => Every::Steps(steps),
@@ -45,10 +43,10 @@ pub(crate) fn of_output(
         std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
     }
     let free_surface = output.write.free_surface();
-    let source = Source::of(output.write.grid(), free_surface, simulation);
+    let source = Source::of(output.write.grid(), free_surface, member.clone());
     let observer: Box<dyn Observer> = match &output.write {
         Writer::Table { probes, .. } => {
-            Box::new(TableObserver::new(path, probes, &shown, free_surface, fresh)?)
+            Box::new(TableObserver::new(path, (member.clone(), simulation), probes, free_surface, fresh)?)
         }
         Writer::Fields { fields, .. } => Box::new(FilesObserver::new(path, source, fields, false, fresh)?),
         Writer::Contacts { fields, .. } => Box::new(FilesObserver::new(path, source, fields, true, fresh)?),
@@ -57,7 +55,8 @@ pub(crate) fn of_output(
             Box::new(profile::ProfileObserver::new(path, (line, source), fields, simulation, fresh)?)
         }
         Writer::Tracks { grains, fields, .. } => {
-            Box::new(tracks::TracksObserver::new(path, grains, fields, simulation, fresh)?)
+            let source = (member.clone(), simulation);
+            Box::new(tracks::TracksObserver::new(path, source, grains, fields, fresh)?)
         }
         #[cfg(feature = "hdf5")]
         Writer::Hdf5 { fields, .. } => {
@@ -75,6 +74,7 @@ pub(crate) fn of_output(
 /// One row of numbers per look.
 struct TableObserver {
     series: Series,
+    member: Arc<dyn Member>,
     probes: Vec<String>,
     free_surface: f64,
 }
@@ -82,26 +82,27 @@ struct TableObserver {
 impl TableObserver {
     fn new(
         path: PathBuf,
+        (member, simulation): (Arc<dyn Member>, &Simulation),
         probes: &[String],
-        shown: &[Shown],
         free_surface: f64,
         fresh: bool,
     ) -> Result<Self, Failure> {
+        let shown = member.shown(simulation);
         let unit = |name: &str| {
             let found = shown.iter().find(|s| s.kind == ShownAs::Number && s.name == name);
             found.map_or("1", |shown| shown.unit).to_owned()
         };
         let mut columns = vec![("time".to_owned(), "s".to_owned())];
         columns.extend(probes.iter().map(|name| (name.clone(), unit(name))));
-        Ok(Self { series: Series::new(path, columns, fresh)?, probes: probes.to_vec(), free_surface })
+        let series = Series::new(path, columns, fresh)?;
+        Ok(Self { series, member, probes: probes.to_vec(), free_surface })
     }
 }
 
 impl Observer for TableObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let mut numbers = Numbers::wanting(self.probes.iter().map(String::as_str));
-        probes::show(simulation.solver(), &mut numbers);
-        voronoi::show(simulation.solver(), self.free_surface, &mut numbers);
+        self.member.show(simulation, self.free_surface, &mut numbers);
         let mut row = vec![simulation.clock().time()];
         row.extend(self.probes.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
         self.series.row(&row)?;
@@ -185,11 +186,29 @@ impl Observer for FilesObserver {
     }
 }
 
+/// The observer that ends a stage, unless its time alone does; it raises the flag.
+pub fn of_end(end: &End, model: &Model, reached: &Arc<AtomicBool>) -> Option<Scheduled> {
+    let reached = reached.clone();
+    Some(match *end {
+        End::For(_) => return None,
+        End::Quiet { kinetic_over_potential, within } => {
+            Rest::scheduled(model.member(None).clone(), kinetic_over_potential, within.value(), reached)
+        }
+        End::Packed { solid_fraction, within } => {
+            Packed::scheduled(model.member(None).clone(), solid_fraction, within.value(), reached)
+        }
+        End::Steady { change, within } => {
+            Steady::scheduled(model.member(None).clone(), change, within.value(), reached)
+        }
+    })
+}
+
 /// Name of the observer that ends a stage.
 pub(crate) const END_OF_STAGE: &str = "end of stage";
 
 /// Ends a stage when the flow changes little.
 pub(crate) struct Steady {
+    member: Arc<dyn Member>,
     change: f64,
     /// Kinetic energy at the look before \[J\].
     before: f64,
@@ -198,15 +217,20 @@ pub(crate) struct Steady {
 
 impl Steady {
     /// Watches from the start of a stage; raises the flag when it ends it.
-    pub(crate) fn scheduled(change: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
-        let steady = Self { change, before: f64::NAN, reached };
+    pub(crate) fn scheduled(
+        member: Arc<dyn Member>,
+        change: f64,
+        within: f64,
+        reached: Arc<AtomicBool>,
+    ) -> Scheduled {
+        let steady = Self { member, change, before: f64::NAN, reached };
         Scheduled::new(END_OF_STAGE, Every::Time(PATIENCE * within), Box::new(steady))
     }
 }
 
 impl Observer for Steady {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let energy = number_of(simulation, "kinetic_energy").unwrap_or(f64::NAN);
+        let energy = number_of(&*self.member, simulation, "kinetic_energy").unwrap_or(f64::NAN);
         let before = std::mem::replace(&mut self.before, energy);
         // Not a number before the second look; a fluid at rest has no energy to change yet.
         if energy > 0.0 && (energy - before).abs() < self.change * energy {
@@ -228,6 +252,7 @@ impl Observer for Steady {
 
 /// Ends a stage when the grains have been at rest for a while.
 pub struct Rest {
+    member: Arc<dyn Member>,
     threshold: f64,
     /// Time that motion must stay below the threshold \[s\].
     patience: f64,
@@ -242,9 +267,14 @@ const LOOKS: f64 = 20.0;
 
 impl Rest {
     /// Watches from the start of a stage; raises the flag when it ends it.
-    pub fn scheduled(threshold: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
+    pub fn scheduled(
+        member: Arc<dyn Member>,
+        threshold: f64,
+        within: f64,
+        reached: Arc<AtomicBool>,
+    ) -> Scheduled {
         let patience = PATIENCE * within;
-        let rest = Self { threshold, patience, loud: 0.0, reached };
+        let rest = Self { member, threshold, patience, loud: 0.0, reached };
         Scheduled::new(END_OF_STAGE, Every::Time(patience / LOOKS), Box::new(rest))
     }
 }
@@ -252,7 +282,7 @@ impl Rest {
 impl Observer for Rest {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let mut numbers = Numbers::wanting(["kinetic_energy", "rotational_energy", "potential_energy"]);
-        simulation.solver().show(&mut numbers);
+        self.member.solver(simulation).show(&mut numbers);
         let get = |name| numbers.get(name).unwrap_or(0.0);
         let moving = get("kinetic_energy") + get("rotational_energy");
         let now = simulation.clock().time_in_segment();
@@ -281,21 +311,29 @@ const DENSITY_LOOKS: f64 = 400.0;
 
 /// Ends a stage when the grains are packed densely enough.
 pub struct Packed {
+    member: Arc<dyn Member>,
     solid_fraction: f64,
     reached: Arc<AtomicBool>,
 }
 
 impl Packed {
     /// Watches from the start of a stage; raises the flag when it ends it.
-    pub fn scheduled(solid_fraction: f64, within: f64, reached: Arc<AtomicBool>) -> Scheduled {
-        let packed = Self { solid_fraction, reached };
+    pub fn scheduled(
+        member: Arc<dyn Member>,
+        solid_fraction: f64,
+        within: f64,
+        reached: Arc<AtomicBool>,
+    ) -> Scheduled {
+        let packed = Self { member, solid_fraction, reached };
         Scheduled::new(END_OF_STAGE, Every::Time(within / DENSITY_LOOKS), Box::new(packed))
     }
 }
 
 impl Observer for Packed {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        if number_of(simulation, "solid_fraction").is_some_and(|found| found >= self.solid_fraction) {
+        if number_of(&*self.member, simulation, "solid_fraction")
+            .is_some_and(|found| found >= self.solid_fraction)
+        {
             self.reached.store(true, Ordering::Relaxed);
             return Ok(Flow::Stop);
         }
@@ -303,9 +341,9 @@ impl Observer for Packed {
     }
 }
 
-/// Ends a run whose grains have all left and fall for ever.
+/// Ends a run of which nothing is left to see.
 pub(crate) struct Gone {
-    region: Whereabouts,
+    member: Arc<dyn Member>,
     reason: Arc<OnceLock<String>>,
 }
 
@@ -314,14 +352,14 @@ const GONE_STEPS: u64 = 1000;
 
 impl Gone {
     /// Watches from now on; tells the reason when it ends the run.
-    pub(crate) fn scheduled(region: Whereabouts, reason: Arc<OnceLock<String>>) -> Scheduled {
-        Scheduled::new("grains gone", Every::Steps(GONE_STEPS), Box::new(Self { region, reason }))
+    pub(crate) fn scheduled(member: Arc<dyn Member>, reason: Arc<OnceLock<String>>) -> Scheduled {
+        Scheduled::new("grains gone", Every::Steps(GONE_STEPS), Box::new(Self { member, reason }))
     }
 }
 
 impl Observer for Gone {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        match self.region.why_left(simulation.solver()) {
+        match self.member.why_gone(simulation) {
             Some(reason) => {
                 self.reason.get_or_init(|| reason);
                 Ok(Flow::Stop)
@@ -351,9 +389,9 @@ impl Observer for SnapshotTimer {
     }
 }
 
-/// One number that the solver shows.
-pub fn number_of(simulation: &Simulation, name: &str) -> Option<f64> {
+/// One number that a member of a simulation shows.
+pub fn number_of(member: &dyn Member, simulation: &Simulation, name: &str) -> Option<f64> {
     let mut numbers = Numbers::wanting([name]);
-    probes::show(simulation.solver(), &mut numbers);
+    member.show(simulation, FREE_SURFACE, &mut numbers);
     numbers.get(name)
 }

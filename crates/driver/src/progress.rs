@@ -1,8 +1,10 @@
 //! Progress of a run on standard error: one line that is rewritten on a terminal, plain lines
 //! every ten seconds otherwise.
 
-use granular_core::{Every, Flow, Numbers, Observer, ObserverError, Scheduled, Simulation};
+use crate::methods::Member;
+use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
 use std::io::{IsTerminal, Write};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Writes a line to standard error. What is said there is a courtesy: that nobody listens any more
@@ -24,17 +26,18 @@ pub(crate) struct StageLine {
 
 struct Progress {
     stage: StageLine,
+    members: Vec<Arc<dyn Member>>,
     terminal: bool,
     last: (Instant, u64, f64),
     shown: bool,
 }
 
 /// The progress of one stage.
-pub(crate) fn scheduled(stage: StageLine) -> Scheduled {
+pub(crate) fn scheduled(stage: StageLine, members: Vec<Arc<dyn Member>>) -> Scheduled {
     let terminal = std::io::stderr().is_terminal();
     let interval = if terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
     let last = (Instant::now(), stage.from.0, stage.from.1);
-    let progress = Progress { stage, terminal, last, shown: false };
+    let progress = Progress { stage, members, terminal, last, shown: false };
     Scheduled::new("progress", Every::Wall(interval), Box::new(progress))
 }
 
@@ -48,13 +51,8 @@ impl Observer for Progress {
         let wall = now.0.duration_since(since).as_secs_f64();
         let rate = (clock.step() - step) as f64 / wall.max(1e-9);
         let pace = (clock.time() - time) / wall.max(1e-9);
-        let mut numbers = Numbers::wanting(["largest_overlap", "largest_speed"]);
-        simulation.solver().show(&mut numbers);
-        let worst = match (numbers.get("largest_overlap"), numbers.get("largest_speed")) {
-            (Some(overlap), _) => format!("overlap {overlap:.2} %"),
-            (None, Some(speed)) => format!("largest speed {speed:.3e} m/s"),
-            (None, None) => String::new(),
-        };
+        let worst = self.members.iter().map(|member| member.progress(simulation));
+        let worst = worst.collect::<Vec<_>>().join("  ");
         let left = (self.stage.end - clock.time()).max(0.0) / pace;
         let line = format!(
             "{}  {:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  {worst}  at most {} left",

@@ -1,18 +1,21 @@
 //! Running a scene, stage by stage, and taking an interrupted run up again.
 
+mod records;
+
+pub use records::{RecordedStage, Seen, StageRecord};
+
 use crate::check;
 use crate::failure::Failure;
 use crate::figures::Drawn;
 use crate::folder::{PROGRAM, RunFolder, provenance};
-use crate::model::{self, Model, PushRecord, Whereabouts};
-use crate::observers::{self, END_OF_STAGE, Gone, Packed, Rest, SnapshotTimer, Steady};
+use crate::model::{self, Model};
+use crate::observers::{self, END_OF_STAGE, Gone, SnapshotTimer};
 use crate::progress;
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
 use granular_core::{Ending, Scheduled, Section, Simulation};
 use granular_io::{SnapshotStore, hash_hex, state_hash};
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -48,41 +51,6 @@ impl Drop for Stepping {
     }
 }
 
-/// What was a stage and how it began and ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StageRecord {
-    /// Name.
-    pub name: String,
-    /// Simulated time at its start \[s\].
-    pub start: f64,
-    /// Simulated time at its end \[s\]; absent while it is under way.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub end: Option<f64>,
-    /// Step \[s\].
-    pub dt: f64,
-    /// Why it ended.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ended: Option<String>,
-    /// Front of the main mass of grains at its start \[m\]; not a number without grains.
-    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::json::number")]
-    pub front: f64,
-    /// Height of the main mass of grains at its start \[m\]; not a number without grains.
-    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::json::number")]
-    pub height: f64,
-    /// What pushes at its start did; absent without any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub push: Option<PushRecord>,
-}
-
-fn unknown() -> f64 {
-    f64::NAN
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_unknown(value: &f64) -> bool {
-    value.is_nan()
-}
-
 /// A run under way.
 struct Session<'a> {
     scene: &'a Scene,
@@ -93,7 +61,7 @@ struct Session<'a> {
     folder: RunFolder,
     store: SnapshotStore,
     outputs: Vec<Scheduled>,
-    records: Vec<StageRecord>,
+    records: Vec<RecordedStage>,
     steps: Vec<f64>,
     interrupt: &'a Interrupt,
     /// While steps are taken.
@@ -101,8 +69,7 @@ struct Session<'a> {
     quiet: bool,
     begun: Instant,
     first_step: u64,
-    /// Where walls and grains were at the start, and why the run ended when all grains had left.
-    region: Option<Whereabouts>,
+    /// Why the run ended when nothing was left to see.
     gone: Arc<OnceLock<String>>,
     /// What came of the figures, once the stages are over.
     figures: Drawn,
@@ -176,9 +143,9 @@ pub fn plot(out: &Path) -> Result<Drawn, Failure> {
     let folder = RunFolder::open(out)?;
     let text = SceneText::read(folder.scene_path())?;
     let (scene, model) = check::read(&text)?;
-    let records: Vec<StageRecord> = serde_json::from_value(folder.facts()?["stages"].clone())
+    let records: Vec<RecordedStage> = serde_json::from_value(folder.facts()?["stages"].clone())
         .map_err(|error| Failure::io(out.display(), format!("run.json has no stages: {error}")))?;
-    crate::figures::draw(&scene, &folder, &records, model.column)
+    crate::figures::draw(&scene, &folder, &records, model.column())
 }
 
 impl<'a> Session<'a> {
@@ -192,15 +159,13 @@ impl<'a> Session<'a> {
         fresh: bool,
     ) -> Result<Self, Failure> {
         let outputs = scene.outputs.iter();
-        let outputs =
-            outputs.map(|output| observers::of_output(output, folder.path(), &model.simulation, fresh));
+        let outputs = outputs.map(|output| observers::of_output(output, folder.path(), &model, fresh));
         Ok(Self {
             scene,
             text: SceneText::read(folder.scene_path())?.text().to_owned(),
             outputs: outputs.collect::<Result<_, _>>()?,
             store: folder.snapshots(),
             first_step: 0,
-            region: Whereabouts::of(model.simulation.solver()),
             gone: Arc::default(),
             figures: Drawn::default(),
             watcher: None,
@@ -255,7 +220,7 @@ impl<'a> Session<'a> {
         self.save(self.scene.stages.len())?;
         self.stepping = None;
         // The run is done also when a figure has nothing to show: to resume it would change nothing.
-        self.figures = crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column)?;
+        self.figures = crate::figures::draw(self.scene, &self.folder, &self.records, self.model.column())?;
         let told = self.figures.failed.iter().chain(self.figures.left_out.iter().filter(|_| !self.quiet));
         told.for_each(|warning| progress::say(format_args!("warning: {warning}")));
         Ok(())
@@ -324,18 +289,20 @@ impl<'a> Session<'a> {
     }
 
     fn begin_stage(&mut self, index: usize) -> Result<(), Failure> {
-        let push = model::begin(&self.model.stages[index], self.model.simulation.solver_mut());
+        let notes = self.model.begin(index);
         self.model.simulation.begin_segment(self.steps[index])?;
-        let number = |name| observers::number_of(&self.model.simulation, name).unwrap_or(f64::NAN);
-        self.records.push(StageRecord {
+        let Model { simulation, members, .. } = &self.model;
+        let seen = members.iter().zip(notes).map(|(member, (name, notes))| {
+            let number = |name| observers::number_of(&**member, simulation, name).unwrap_or(f64::NAN);
+            (name, Seen { front: number("front"), height: number("height"), push: notes.push })
+        });
+        self.records.push(RecordedStage {
             name: self.scene.stages[index].name.clone(),
-            start: self.model.simulation.clock().time(),
+            start: simulation.clock().time(),
             end: None,
             dt: self.steps[index],
             ended: None,
-            front: number("front"),
-            height: number("height"),
-            push,
+            solvers: seen.collect(),
         });
         self.save(index)
     }
@@ -347,25 +314,16 @@ impl<'a> Session<'a> {
         quiet_flag: Option<&Arc<AtomicBool>>,
     ) -> Result<Vec<Scheduled>, Failure> {
         let mut extra = vec![self.snapshot_timer()];
-        let watcher = quiet_flag.and_then(|flag| match self.scene.stages[index].end {
-            End::For(_) => None,
-            End::Quiet { kinetic_over_potential, within } => {
-                Some(Rest::scheduled(kinetic_over_potential, within.value(), flag.clone()))
-            }
-            End::Packed { solid_fraction, within } => {
-                Some(Packed::scheduled(solid_fraction, within.value(), flag.clone()))
-            }
-            End::Steady { change, within } => Some(Steady::scheduled(change, within.value(), flag.clone())),
-        });
+        let watcher =
+            quiet_flag.and_then(|flag| observers::of_end(&self.scene.stages[index].end, &self.model, flag));
         if let Some(mut watcher) = watcher {
             if let Some(saved) = self.watcher.take() {
                 watcher.restore(&saved)?;
             }
             extra.push(watcher);
         }
-        if let Some(region) = self.region.filter(|region| region.may_be_left(self.model.simulation.solver()))
-        {
-            extra.push(Gone::scheduled(region, self.gone.clone()));
+        for member in self.model.members.iter().filter(|member| member.may_be_gone(&self.model.simulation)) {
+            extra.push(Gone::scheduled(member.clone(), self.gone.clone()));
         }
         if !self.quiet {
             let name =
@@ -373,7 +331,10 @@ impl<'a> Session<'a> {
             let end = self.records.last().map_or(0.0, |record| record.start) + longest;
             let clock = self.model.simulation.clock();
             let from = (clock.step(), clock.time());
-            extra.push(progress::scheduled(progress::StageLine { name, end, from }));
+            extra.push(progress::scheduled(
+                progress::StageLine { name, end, from },
+                self.model.members.clone(),
+            ));
         }
         Ok(extra)
     }
@@ -486,8 +447,7 @@ impl Session<'_> {
         let simulation = &self.model.simulation;
         let (clock, wall) = (simulation.clock(), self.begun.elapsed().as_secs_f64());
         let steps = clock.step() - self.first_step;
-        let metrics =
-            crate::figures::metrics(self.scene, simulation, (&self.folder, &self.records), self.model.column);
+        let metrics = crate::figures::metrics(self.scene, &self.model, (&self.folder, &self.records));
         let values = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.value)));
         let units = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.unit)));
         let facts = json!({

@@ -13,12 +13,12 @@ pub mod region;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
+pub use crate::methods::SolverSpec;
+use crate::methods::dem::{GrainSpec, MaterialSpec, PairSpec};
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, AngularVelocity, Energy, Frequency, Length, Time, Velocity};
-use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
-use granular_lbm::spec::LbmSpec;
 use push::PushProfileSpec;
 use region::RegionSpec;
 use schemars::JsonSchema;
@@ -94,15 +94,6 @@ pub enum Dimension {
     Plane,
     /// Space, z up; grains are spheres.
     Space,
-}
-
-/// The method that solves the scene.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-pub enum SolverSpec {
-    /// Discrete element method, for grains.
-    Dem(DemSpec),
-    /// Lattice Boltzmann method, for a fluid.
-    Lbm(LbmSpec),
 }
 
 /// The grains.

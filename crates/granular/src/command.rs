@@ -366,17 +366,23 @@ fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
 /// Lists all that a scene can show.
 fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
     let (_, model) = check::read(&SceneText::read(path)?)?;
-    let solver = model.simulation.solver();
-    let all = granular_driver::model::all_shown(solver);
-    let mut list: Vec<_> = all.into_iter().map(|s| (format!("{:?}", s.kind), s)).collect();
-    list.extend(granular_driver::model::shown_on_grids(solver).into_iter().map(|s| ("Grid".to_owned(), s)));
+    let mut list = Vec::new();
+    for member in &model.members {
+        let all = member.shown(&model.simulation).into_iter();
+        list.extend(all.map(|shown| (member.name(), format!("{:?}", shown.kind), shown)));
+        let averages = member.shown_on_grids(&model.simulation).into_iter();
+        list.extend(averages.map(|shown| (member.name(), "Grid".to_owned(), shown)));
+    }
     let rows: Vec<Value> = list
         .iter()
-        .map(|(kind, s)| json!({ "name": s.name, "unit": s.unit, "kind": kind, "meaning": s.meaning }))
+        .map(|(of, kind, s)| json!({ "of": of, "name": s.name, "unit": s.unit, "kind": kind, "meaning": s.meaning }))
         .collect();
     show(common, &json!(rows), || {
-        let line =
-            |(kind, s): &(String, Shown)| format!("{kind:<8} {:<28} {:<8} {}\n", s.name, s.unit, s.meaning);
+        let several = model.members.len() > 1;
+        let line = |(of, kind, s): &(&str, String, Shown)| {
+            let of = if several { format!("{of:<12} ") } else { String::new() };
+            format!("{of}{kind:<8} {:<28} {:<8} {}\n", s.name, s.unit, s.meaning)
+        };
         list.iter().map(line).collect()
     });
     Ok(())

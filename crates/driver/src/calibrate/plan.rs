@@ -49,7 +49,7 @@ impl Plan {
 
     /// Shear strain before a flow is steady, and at its end. A fast flow takes several strains to find its density: both
     /// grow with the inertial number, and a fast flow costs less per strain.
-    pub(super) fn strains(&self, inertial_number: f64) -> (f64, f64) {
+    pub(crate) fn strains(&self, inertial_number: f64) -> (f64, f64) {
         let longer = 1.0 + 20.0 * inertial_number;
         (self.settle * longer, (self.settle + self.measure) * longer)
     }

@@ -2,10 +2,10 @@
 
 use super::frames::{choose, left_out};
 use super::spectrum::{Spectrum, spectrum};
-use super::{Metric, Units, table_of, title, with_references};
+use super::{Metric, Units, seen_by, table_of, title, with_references};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
-use crate::run::StageRecord;
+use crate::run::{RecordedStage, StageRecord};
 use crate::scene::fluid::ReferenceSpec;
 use crate::scene::{FigureSpec, Scene};
 use granular_io::Table;
@@ -104,10 +104,11 @@ pub(super) fn spectrum_chart(
 }
 
 /// Peaks of all spectra of a scene.
-pub(super) fn peaks(scene: &Scene, folder: &RunFolder, records: &[StageRecord]) -> Vec<Metric> {
+pub(super) fn peaks(scene: &Scene, folder: &RunFolder, records: &[RecordedStage]) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for figure in &scene.figures {
         let FigureSpec::Spectrum { table, column, stage, reference, .. } = figure else { continue };
+        let records = seen_by(scene, records, figure);
         let record = records.iter().find(|record| record.name == *stage);
         let (Some(record), Ok(table)) = (record, table_of(folder, table)) else { continue };
         let Some(peak) = spectrum_of(&table, column, record).and_then(|found| found.peak) else { continue };

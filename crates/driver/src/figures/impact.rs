@@ -1,11 +1,11 @@
 //! What grains do after a push: run-out, duration, and the decay of motion. `docs/impacts.md` explains the numbers.
 
 use super::column::running_median;
-use super::{Metric, table_of, title};
+use super::{Metric, seen_by, table_of, title};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::model::PushRecord;
-use crate::run::StageRecord;
+use crate::run::{RecordedStage, StageRecord};
 use crate::scene::{FigureSpec, Scene};
 use granular_io::Table;
 use granular_io::figure::{Axis, Chart, Panels, Series, Style};
@@ -185,10 +185,11 @@ fn value_at(curve: &[[f64; 2]], time: f64) -> Option<f64> {
 }
 
 /// Numbers of all impacts of a scene; of several the last counts.
-pub(super) fn metrics(scene: &Scene, folder: &RunFolder, records: &[StageRecord]) -> Vec<Metric> {
+pub(super) fn metrics(scene: &Scene, folder: &RunFolder, records: &[RecordedStage]) -> Vec<Metric> {
     let mut metrics: Vec<Metric> = Vec::new();
     for figure in &scene.figures {
         let FigureSpec::Impact { table, stage, transient, .. } = figure else { continue };
+        let records = seen_by(scene, records, figure);
         let record = records.iter().find(|record| record.name == *stage);
         let (Some(record), Ok(table)) = (record, table_of(folder, table)) else { continue };
         let Some(impact) = Impact::of(&table, record, *transient) else { continue };
@@ -274,16 +275,8 @@ mod tests {
             gravity: 1.0,
             potential: 50.0,
         };
-        let record = StageRecord {
-            name: "impact".to_owned(),
-            start: 5.0,
-            end: None,
-            dt: 0.1,
-            ended: None,
-            front: 10.0,
-            height: 4.0,
-            push: Some(push),
-        };
+        let record =
+            StageRecord { name: "impact".to_owned(), start: 5.0, front: 10.0, height: 4.0, push: Some(push) };
         Impact::of(&Table { columns, rows }, &record, 1.0).unwrap()
     }
 

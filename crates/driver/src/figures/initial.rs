@@ -79,7 +79,7 @@ fn figure(scene: &Scene, model: &Model) -> GrainFigure {
         value: if of_one_size { f64::NAN } else { 1e3 * radius },
     };
     let mut panel = GrainPanel { grains: all.iter().map(grain).collect(), ..GrainPanel::default() };
-    let walls = Walls { scene, column: model.column, records: &[] };
+    let walls = Walls { scene, column: model.column(), records: &[] };
     panel.marks = marks(scene, solver);
     // Before the first stage all walls stand, also those that will move.
     let before = -1.0;
@@ -242,7 +242,7 @@ mod tests {
         let (figure, svg) = drawn("column", of("column-collapse"));
         let (scene, model) = check::read(&SceneText::new("column", of("column-collapse"))).unwrap();
         let found = Extents::of(model.simulation.solver()).unwrap();
-        let width = model.column.unwrap().width;
+        let width = model.column().unwrap().width;
         assert!((found.size(0) / width - 1.0).abs() < 0.05 && found.low[1] > -1e-4, "{found:?} {width}");
         assert_eq!(figure.panels[0].grains.len(), model.simulation.solver().size().0);
         // Floor, left wall and gate, whose name is told.

@@ -114,7 +114,6 @@ fn four_digits(time: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::scene_file::SceneText;
-    use serde_json::json;
 
     fn template(edits: &[&str]) -> Scene {
         let (name, text) = crate::TEMPLATES.iter().find(|(name, _)| *name == "sample").unwrap();
@@ -127,10 +126,8 @@ mod tests {
     fn a_column_that_is_held_in_a_silo_has_seconds_and_one_that_spreads_its_own_time() {
         let silo = template(&[]);
         assert!(silo.walls.iter().any(|wall| matches!(wall, WallSpec::Right { .. })));
-        let record: StageRecord = serde_json::from_value(
-            json!({ "name": "settle", "start": 0.5, "dt": 1e-5, "front": 0.05, "height": 0.0981 }),
-        )
-        .unwrap();
+        let (front, height) = (0.05, 0.0981);
+        let record = StageRecord { name: "settle".to_owned(), start: 0.5, front, height, push: None };
         let column = Some(ColumnSize { width: 0.05, height: 0.1, depth: None, round: None });
         let found = units(&silo, &record, column);
         assert_eq!(

@@ -285,7 +285,7 @@ mod tests {
     }
 
     fn record(name: &str, start: f64) -> StageRecord {
-        serde_json::from_value(serde_json::json!({ "name": name, "start": start, "dt": 1e-5 })).unwrap()
+        StageRecord { name: name.to_owned(), start, front: f64::NAN, height: f64::NAN, push: None }
     }
 
     /// Lines of these walls beside a column of 50 mm, around grains that take up 100 mm x 100 mm.

@@ -2,15 +2,15 @@
 
 mod files;
 
-use super::{Problems, nearest};
+use super::{Model, Problems, nearest};
 use crate::machine::room_for;
-use crate::observers::{Grid, Line};
-use crate::probes;
-use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Scene, Writer};
-use crate::voronoi;
+use crate::methods::Member;
+use crate::observers::Line;
+use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Output, Scene, Writer};
 use files::{Files, Taken, check_path, spelled};
-use granular_core::{Location, Shown, ShownAs, Solver};
+use granular_core::{Location, ShownAs};
 use granular_io::can_be_a_column;
+use std::sync::Arc;
 
 /// Memory that a point of a line takes, with the cells around it \[bytes\].
 const BYTES_PER_POINT: f64 = 400.0;
@@ -70,9 +70,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
     for (k, stage) in scene.stages.iter().enumerate() {
         let Some(path) = &stage.save else { continue };
         let place = format!("stages.{k}.save");
-        if scene.fluid.is_some() {
-            problems.add(place, format!("`{path}`"), "nothing: only grains are saved as a sample", "");
-        } else if check_path(&place, path, problems) {
+        if check_path(&place, path, problems) {
             taken.claim(&place, path, vec![Files::One(spelled(path))], problems);
             check_materials(scene, problems);
         }
@@ -111,7 +109,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
 /// Refuses names of materials that the file of a saved sample cannot hold.
 fn check_materials(scene: &Scene, problems: &mut Problems) {
     for name in scene.materials.keys().filter(|name| name.contains([',', '\n', '\r'])) {
-        let place = format!("materials.{}", super::grains::quoted(name));
+        let place = format!("materials.{}", super::quoted(name));
         let hint = "a stage saves the grains with the names of their materials, one line a grain";
         problems.add(
             place,
@@ -122,21 +120,8 @@ fn check_materials(scene: &Scene, problems: &mut Problems) {
     }
 }
 
-/// What outputs can show of a solver at its own places.
-pub fn all_shown(solver: &dyn Solver) -> Vec<Shown> {
-    let mut list = probes::shown(solver);
-    list.extend(voronoi::shown(solver));
-    list
-}
-
-/// What outputs with a `grid` can show of a solver; nothing unless it has grains.
-pub fn shown_on_grids(solver: &dyn Solver) -> Vec<Shown> {
-    if matches!(solver.location(), Location::Points(_)) { Grid::shown(solver) } else { Vec::new() }
-}
-
 /// Checks of probes, fields and columns.
-pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static str, problems: &mut Problems) {
-    let (own, averaged) = (all_shown(solver), Grid::shown(solver));
+pub(super) fn check_names(scene: &Scene, model: &Model, problems: &mut Problems) {
     let mut unknown = Vec::new();
     for (k, output) in scene.outputs.iter().enumerate() {
         let (key, kind) = match &output.write {
@@ -147,7 +132,19 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static st
             Writer::Contacts { .. } => ("fields", ShownAs::Link),
         };
         let names = output.write.names();
-        let shown = if output.write.grid().is_some() { &averaged } else { &own };
+        let Some(member) = member_of(output, model) else {
+            let path = format!("outputs.{k}.of");
+            let known: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
+            let of = output.of.as_deref().unwrap_or_default();
+            let hint = nearest(of, known.iter().copied());
+            problems.add(path, format!("`{of}`, which is no solver of this scene"), known.join(", "), hint);
+            unknown.push(output.write.path());
+            continue;
+        };
+        let shown = match output.write.grid() {
+            Some(_) => member.shown_on_grids(&model.simulation),
+            None => member.shown(&model.simulation),
+        };
         let known: Vec<&str> = shown.iter().filter(|s| s.kind == kind).map(|s| s.name.as_str()).collect();
         for (n, name) in names.iter().enumerate() {
             let path = format!("outputs.{k}.write.{key}.{n}");
@@ -167,16 +164,25 @@ pub(super) fn check_names(scene: &Scene, solver: &dyn Solver, front: &'static st
             }
         }
     }
-    check_grids(scene, solver, problems);
-    check_lines(scene, solver, problems);
-    check_tracks(scene, solver, problems);
-    check_figures(scene, front, &unknown, problems);
+    check_grids(scene, model, problems);
+    check_lines(scene, model, problems);
+    check_tracks(scene, model, problems);
+    check_figures(scene, model.column().map_or("front", |column| column.front()), &unknown, problems);
+}
+
+/// The solver of which an output is; none when the scene has none of this name.
+fn member_of<'a>(output: &Output, model: &'a Model) -> Option<&'a Arc<dyn Member>> {
+    match &output.of {
+        None => model.members.first(),
+        Some(name) => model.members.iter().find(|member| member.name() == name),
+    }
 }
 
 /// Whether grids of outputs are of grains and make sense.
-fn check_grids(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+fn check_grids(scene: &Scene, model: &Model, problems: &mut Problems) {
     for (k, output) in scene.outputs.iter().enumerate() {
-        match output.write.grid().map(|grid| Grid::of(grid, solver)) {
+        let Some(member) = member_of(output, model) else { continue };
+        match output.write.grid().map(|grid| member.averages(grid)) {
             Some(Err(error)) => {
                 problems.add(format!("outputs.{k}.write.{}", error.key), error.value, error.allowed, "");
             }
@@ -194,10 +200,11 @@ fn check_grids(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
 }
 
 /// Whether tracks are of grains that there are.
-fn check_tracks(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+fn check_tracks(scene: &Scene, model: &Model, problems: &mut Problems) {
     for (k, output) in scene.outputs.iter().enumerate() {
         let Writer::Tracks { grains, .. } = &output.write else { continue };
-        let path = format!("outputs.{k}.write");
+        let Some(member) = member_of(output, model) else { continue };
+        let (path, solver) = (format!("outputs.{k}.write"), member.solver(&model.simulation));
         if matches!(solver.location(), Location::Grid { .. }) {
             problems.add(path, "Tracks of a fluid", "Tracks of grains", "Fields writes all cells");
             continue;
@@ -220,20 +227,21 @@ fn check_tracks(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
 }
 
 /// Where the fields of an output live.
-fn location_of<'a>(write: &Writer, solver: &'a dyn Solver) -> Option<Location<'a>> {
-    match write.grid() {
-        Some(grid) => Grid::of(grid, solver).ok().map(|grid| grid.location()),
-        None => Some(solver.location()),
+fn location_of<'a>(output: &Output, model: &'a Model) -> Option<Location<'a>> {
+    let member = member_of(output, model)?;
+    match output.write.grid() {
+        Some(grid) => member.averages(grid).ok().map(|grid| grid.location()),
+        None => Some(member.solver(&model.simulation).location()),
     }
 }
 
 /// Whether lines of profiles lie in the grid.
-fn check_lines(scene: &Scene, solver: &dyn Solver, problems: &mut Problems) {
+fn check_lines(scene: &Scene, model: &Model, problems: &mut Problems) {
     for (k, output) in scene.outputs.iter().enumerate() {
         let Writer::Profile { from, to, points, .. } = &output.write else { continue };
         let path = format!("outputs.{k}.write");
         // A grid that makes no sense has been blamed.
-        let Some(location) = location_of(&output.write, solver) else { continue };
+        let Some(location) = location_of(output, model) else { continue };
         let Location::Grid { origin, spacing, cells } = location else {
             let hint = "add `grid` to average the grains; Fields writes all of them";
             problems.add(path, "a Profile of grains", "a Profile of a fluid, or one with a `grid`", hint);

@@ -2,13 +2,14 @@
 
 use super::series::Series;
 use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
+use crate::methods::Member;
 use crate::scene::Chosen;
-use crate::voronoi;
 use granular_core::{FieldRef, Location};
 use granular_io::Frame;
 use granular_io::frame::Values;
 use granular_tessellate::FREE_SURFACE;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 const ENTRIES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
@@ -16,6 +17,7 @@ const ENTRIES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// One row per chosen grain and look.
 pub(super) struct TracksObserver {
     series: Series,
+    member: Arc<dyn Member>,
     chosen: Chosen,
     fields: Vec<String>,
     axes: usize,
@@ -24,19 +26,19 @@ pub(super) struct TracksObserver {
 impl TracksObserver {
     pub(super) fn new(
         path: PathBuf,
+        (member, simulation): (Arc<dyn Member>, &Simulation),
         chosen: &Chosen,
         fields: &[String],
-        simulation: &Simulation,
         fresh: bool,
     ) -> Result<Self, Failure> {
-        let axes = match simulation.solver().location() {
+        let axes = match member.solver(simulation).location() {
             Location::Points(FieldRef::Vector2(_)) => 2,
             Location::Points(_) => 3,
             Location::Grid { .. } => return Err(Failure::io(path.display(), "tracks are of grains")),
         };
-        let columns = head(&frame(fields, simulation), fields, axes);
+        let columns = head(&frame(&*member, fields, simulation), fields, axes);
         let series = Series::new(path, columns, fresh)?;
-        Ok(Self { series, chosen: chosen.clone(), fields: fields.to_vec(), axes })
+        Ok(Self { series, member, chosen: chosen.clone(), fields: fields.to_vec(), axes })
     }
 
     fn row(&self, frame: &Frame, index: usize) -> Vec<f64> {
@@ -58,10 +60,9 @@ impl TracksObserver {
     }
 }
 
-fn frame(fields: &[String], simulation: &Simulation) -> Frame {
+fn frame(member: &dyn Member, fields: &[String], simulation: &Simulation) -> Frame {
     let mut frame = Frame::wanting(fields.iter().map(String::as_str).chain(["id"]));
-    simulation.solver().show(&mut frame);
-    voronoi::show(simulation.solver(), FREE_SURFACE, &mut frame);
+    member.show(simulation, FREE_SURFACE, &mut frame);
     frame
 }
 
@@ -90,13 +91,15 @@ fn head(frame: &Frame, fields: &[String], axes: usize) -> Vec<(String, String)> 
 
 impl Observer for TracksObserver {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let frame = frame(&self.fields, simulation);
+        let frame = frame(&*self.member, &self.fields, simulation);
         let time = simulation.clock().time();
         self.series.looked_at(simulation);
         let Some(Values::Index(ids)) = frame.get("id").map(|field| &field.values) else {
             return Ok(Flow::Continue);
         };
-        let Location::Points(points) = simulation.solver().location() else { return Ok(Flow::Continue) };
+        let Location::Points(points) = self.member.solver(simulation).location() else {
+            return Ok(Flow::Continue);
+        };
         let Values::Vector(points) = Values::from(points) else { return Ok(Flow::Continue) };
         let found = ids.iter().zip(0..).map(|(&id, index)| (id, index));
         let mut found: Vec<(u32, usize)> = found.filter(|(id, _)| self.chosen.holds(*id)).collect();

@@ -12,6 +12,9 @@ use serde::Deserialize;
 pub struct Output {
     /// How often.
     pub every: EverySpec,
+    /// Name of the solver that is shown; of several the first in the order of their names by default.
+    #[serde(default)]
+    pub of: Option<String>,
     /// What to write, and where.
     pub write: Writer,
 }

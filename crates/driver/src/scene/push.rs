@@ -1,6 +1,5 @@
 //! How a push is spread over the grains.
 
-use granular_dem::PushProfile;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -13,13 +12,4 @@ pub enum PushProfileSpec {
     /// In proportion to the depth below the highest grain: most for the lowest grain, nothing for the highest, as from a quake
     /// along the bottom.
     Gradient,
-}
-
-impl From<PushProfileSpec> for PushProfile {
-    fn from(spec: PushProfileSpec) -> Self {
-        match spec {
-            PushProfileSpec::Uniform => Self::Uniform,
-            PushProfileSpec::Gradient => Self::Gradient,
-        }
-    }
 }

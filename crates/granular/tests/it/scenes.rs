@@ -3,165 +3,34 @@
 use crate::support::{Scratch, workspace};
 use granular_driver::scene::{Scene, Writer};
 use granular_driver::scene_file::{SceneText, reference};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
 /// Scenes with what makes them short. An example without a line here fails the test.
-const SHORTENED: &[(&str, &[&str])] = &[
-    ("ch3_disk_on_incline", &["stages.0.end=For(\"0.05 s\")"]),
-    ("ch3_hertz_impact", &["solvers.spheres.steps_per_contact=50"]),
-    (
-        "ch3_hopper",
-        &[
-            "stages.0.end=For(\"0.03 s\")",
-            "stages.1.end=For(\"0.03 s\")",
-            "stages.2.end=For(\"0.03 s\")",
-            "figures.1.times=[0]",
-        ],
-    ),
-    ("ch4_runout", &["sample.extent=Grains(120)", "stages.1.end=For(\"0.1 s\")"]),
-    (
-        "ch3_voronoi",
-        &[
-            "sample.extent=Grains(150)",
-            "stages.0.end=For(\"0.02 s\")",
-            "stages.1.end=For(\"0.06 s\")",
-            "figures.2.times=[0.02]",
-        ],
-    ),
-    (
-        "ch4_sample",
-        &[
-            "sample.extent=Grains(100)",
-            "stages.0.end=For(\"0.05 s\")",
-            "stages.1.end=For(\"0.01 s\")",
-            "stages.2.end=For(\"0.01 s\")",
-            "stages.3.end=For(\"0.01 s\")",
-            "stages.4.end=For(\"0.02 s\")",
-            "figures.1.times=[0]",
-        ],
-    ),
-    (
-        "ch4_slope_impact",
-        &[
-            "sample.extent=Grains(100)",
-            "stages.0.end=For(\"0.02 s\")",
-            "stages.1.end=For(\"0.05 s\")",
-            "stages.2.end=For(\"0.1 s\")",
-        ],
-    ),
-    (
-        "ch4_slope_impact/from_pile",
-        &[
-            "sample.path=\"HERE/ch4_slope_impact_scene/pile.csv\"",
-            "stages.0.end=For(\"0.02 s\")",
-            "stages.1.end=For(\"0.05 s\")",
-        ],
-    ),
-    ("ch4_shear", &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.02 s\")"]),
-    (
-        "ch5_cavity",
-        &[
-            "solvers.fluid.spacing=50 mm",
-            // Too few cells for the default operator: a grid Reynolds number of 50 where 25 are borne.
-            "solvers.fluid.operator=Regularised",
-            "stages.0.end=For(\"12 s\")",
-        ],
-    ),
-    ("ch5_cylinder_steady", &["solvers.fluid.spacing=10 mm", "stages.0.end=For(\"1 s\")"]),
-    (
-        "ch5_cylinder_street",
-        &[
-            "solvers.fluid.spacing=10 mm",
-            "solvers.fluid.operator=Regularised",
-            "stages.0.end=For(\"0.5 s\")",
-            "stages.1.end=For(\"0.5 s\")",
-        ],
-    ),
-    ("ch5_duct", &["solvers.water.spacing=1 mm", "stages.0.end=For(\"40 s\")"]),
-    (
-        "ch5_karman_disk",
-        &[
-            "solvers.water.spacing=2.5 mm",
-            "solvers.water.operator=Regularised",
-            "stages.0.end=For(\"10 s\")",
-            "stages.1.end=For(\"10 s\")",
-        ],
-    ),
-    (
-        "ch5_karman_square",
-        &[
-            "solvers.water.spacing=2.5 mm",
-            "solvers.water.operator=Regularised",
-            "stages.0.end=For(\"10 s\")",
-            "stages.1.end=For(\"10 s\")",
-        ],
-    ),
-    ("ch5_oscillating_disk", &["solvers.water.spacing=2 mm", "stages.0.end=For(\"5 s\")"]),
-    ("ch5_poiseuille", &["stages.0.end=For(\"120 s\")"]),
-    ("ch5_sphere_in_duct", &["solvers.fluid.spacing=4 mm", "stages.0.end=For(\"5 s\")"]),
-    ("ch5_wall_obstacle", &["solvers.water.spacing=1 mm", "stages.0.end=For(\"20 s\")"]),
-    (
-        "ch4_coarse_graining",
-        &["sample.extent=Grains(200)", "stages.0.end=For(\"0.02 s\")", "stages.1.end=For(\"0.06 s\")"],
-    ),
-    (
-        "ch5_annulus",
-        &["stages.1.end=For(\"0.1 s\")", "outputs.1.every=Time(\"0.02 s\")", "figures.1.times=[0]"],
-    ),
-    (
-        "ch4_calibration",
-        &["sample.grains=100", "stages.0.end=For(\"0.05 s\")", "stages.1.end=For(\"0.01 s\")"],
-    ),
-    (
-        "ch4_density",
-        &[
-            "sample.extent=Grains(100)",
-            "stages.0.end=For(\"0.05 s\")",
-            "stages.1.end=For(\"0.01 s\")",
-            "stages.2.end=For(\"0.01 s\")",
-            "stages.3.end=For(\"0.01 s\")",
-            "stages.4.end=For(\"0.02 s\")",
-            "stages.5.end=For(\"0.02 s\")",
-            "figures.3.times=[0]",
-        ],
-    ),
-    (
-        "ch4_energies",
-        &[
-            "sample.extent=Grains(150)",
-            "stages.0.end=For(\"0.02 s\")",
-            "stages.1.end=For(\"0.06 s\")",
-            "figures.2.times=[0]",
-        ],
-    ),
-    (
-        "ch4_collapse_3d",
-        &[
-            "sample.extent=Grains(200)",
-            "stages.0.end=For(\"0.06 s\")",
-            "stages.1.end=For(\"0.06 s\")",
-            "figures.1.times=[0, 2]",
-            "figures.2.times=[0, 2]",
-        ],
-    ),
-    (
-        "ch4_column_collapse",
-        &[
-            "sample.extent=Grains(200)",
-            "stages.0.end=For(\"0.02 s\")",
-            "stages.1.end=For(\"0.06 s\")",
-            "figures.2.times=[0, 1]",
-        ],
-    ),
-];
+const SHORTENED: &str = include_str!("../../../../examples/shortened.txt");
+
+/// Changes by the name of an example.
+fn shortened() -> BTreeMap<&'static str, Vec<&'static str>> {
+    let mut found: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let mut name = "";
+    for line in SHORTENED.lines().filter(|line| !line.trim_start().starts_with('#')) {
+        match line.strip_prefix("    ") {
+            Some(change) => found.get_mut(name).expect("changes follow a name").push(change),
+            None => {
+                name = line;
+                found.insert(name, Vec::new());
+            }
+        }
+    }
+    found
+}
 
 #[test]
 fn every_example_runs_and_leaves_what_its_scene_asks_for() {
     let scratch = Scratch::new("examples");
     let folders = fs::read_dir(workspace().join("examples")).unwrap().map(|entry| entry.unwrap().path());
-    let mut seen = BTreeSet::new();
+    let (shortened, mut seen) = (shortened(), BTreeSet::new());
     for folder in folders.filter(|path| path.is_dir()) {
         let name = folder.file_name().unwrap().to_str().unwrap();
         let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
@@ -172,10 +41,11 @@ fn every_example_runs_and_leaves_what_its_scene_asks_for() {
         scenes.sort_by_key(|scene| scene.file_stem().unwrap() != "scene");
         for scene in scenes {
             let scene_name = format!("{name}/{}", scene.file_stem().unwrap().to_str().unwrap());
-            let short = SHORTENED.iter().find(|(known, _)| *known == scene_name);
-            let short = short.or_else(|| SHORTENED.iter().find(|(known, _)| *known == name));
-            let (key, edits) = short.unwrap_or_else(|| panic!("examples/{name} has no line in SHORTENED"));
-            seen.insert(key);
+            let short =
+                shortened.get_key_value(scene_name.as_str()).or_else(|| shortened.get_key_value(name));
+            let (key, edits) =
+                short.unwrap_or_else(|| panic!("examples/shortened.txt has no line for {name}"));
+            seen.insert(*key);
             let here = scratch.path("");
             let edits = edits.iter().map(|edit| edit.replace("HERE", here.to_str().unwrap()));
             let edits: Vec<String> = edits.flat_map(|edit| ["--set".to_owned(), edit]).collect();
@@ -186,7 +56,7 @@ fn every_example_runs_and_leaves_what_its_scene_asks_for() {
             assert_outputs(&scratch.path(&out));
         }
     }
-    assert_eq!(seen.len(), SHORTENED.len(), "SHORTENED has a line without an example");
+    assert_eq!(seen.len(), shortened.len(), "examples/shortened.txt has a name without an example");
 }
 
 /// Tables parse, collections list files that are there, figures are images.

@@ -3,6 +3,7 @@
 use super::stages;
 use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
 use granular_driver::failure::Failure;
+use granular_driver::methods::Member;
 use granular_driver::model::Model;
 use granular_driver::observers::{Rest, number_of};
 use granular_driver::scene::{End, Scene};
@@ -114,9 +115,9 @@ impl Collapse {
     pub(crate) fn run(&self) -> Result<Fallen, Failure> {
         let (scene, mut model, steps) = stages::open(&self.scene()?)?;
         let begun = Instant::now();
-        let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
+        let number = |model: &Model, name| model.number(name).unwrap_or(f64::NAN);
         let scale = number(&model, "potential_energy");
-        let column = model.column.expect("the template is a column");
+        let column = model.column().expect("the template is a column");
         let (last, settling) = steps.split_last().expect("the template has stages");
         let mut residual = 0.0_f64;
         for (index, &dt) in settling.iter().enumerate() {
@@ -153,19 +154,19 @@ impl Collapse {
     pub(crate) fn watch<T>(
         &self,
         time: f64,
-        look: impl Fn(&Simulation) -> Result<T, Failure>,
+        look: impl Fn(&Model) -> Result<T, Failure>,
     ) -> Result<[T; 2], Failure> {
         let (scene, mut model, steps) = stages::open(&self.scene()?)?;
-        let column = model.column.expect("the template is a column");
+        let column = model.column().expect("the template is a column");
         let (last, settling) = steps.split_last().expect("the template has stages");
         for (index, &dt) in settling.iter().enumerate() {
             self.stage(&scene, &mut model, index, dt)?;
         }
-        let settled = look(&model.simulation)?;
+        let settled = look(&model)?;
         stages::begin(&mut model, settling.len());
         let unit = (column.height / gravity(&scene)).sqrt();
         self.part(&mut model, *last, time * unit, Vec::new())?;
-        Ok([settled, look(&model.simulation)?])
+        Ok([settled, look(&model)?])
     }
 
     /// Runs a stage and returns the largest energy residual.
@@ -177,7 +178,8 @@ impl Collapse {
             }
             End::Quiet { kinetic_over_potential, within } => {
                 let rested = Arc::new(AtomicBool::new(false));
-                let rest = Rest::scheduled(kinetic_over_potential, within.value(), rested);
+                let grains = model.member(None).clone();
+                let rest = Rest::scheduled(grains, kinetic_over_potential, within.value(), rested);
                 self.part(model, dt, within.value(), vec![rest])
             }
         }
@@ -194,7 +196,7 @@ impl Collapse {
         model.simulation.begin_segment(dt)?;
         let largest = Arc::new(Mutex::new(0.0));
         if self.ledger {
-            let watch = Watch { largest: largest.clone() };
+            let watch = Watch { member: model.member(None).clone(), largest: largest.clone() };
             observers.push(Scheduled::new("residual", Every::Time(LOOK), Box::new(watch)));
         }
         model.simulation.run(duration, &mut observers, &AtomicBool::new(false))?;
@@ -203,19 +205,20 @@ impl Collapse {
     }
 }
 
-/// Makes the changes at the start of a stage.
+/// Gravity \[m/s^2\].
 fn gravity(scene: &Scene) -> f64 {
     scene.gravity.iter().map(|component| component.value().powi(2)).sum::<f64>().sqrt()
 }
 
 /// Remembers the largest energy residual.
 struct Watch {
+    member: Arc<dyn Member>,
     largest: Arc<Mutex<f64>>,
 }
 
 impl Observer for Watch {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let residual = number_of(simulation, "energy_residual").unwrap_or(f64::NAN).abs();
+        let residual = number_of(&*self.member, simulation, "energy_residual").unwrap_or(f64::NAN).abs();
         let mut largest = self.largest.lock().expect("only this thread holds it");
         // A residual that is not a number must not get lost in a comparison.
         if residual.is_nan() || residual > *largest {

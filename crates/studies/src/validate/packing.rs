@@ -5,7 +5,6 @@ use super::row::{Measure, Rows, Tier};
 use super::stages;
 use core::f64::consts::PI;
 use granular_driver::failure::Failure;
-use granular_driver::observers::number_of;
 use granular_driver::parallel;
 
 /// Solid fractions of the samples of the thesis: dense and loose columns, and the pile of the slope.
@@ -65,7 +64,7 @@ fn prepare(grains: usize, seed: u64, target: f64, effort: Effort) -> Result<Prep
         edits.push("stages.4.end.within=0.3 s".to_owned());
     }
     let (model, reached) = stages::run(&stages::template("sample", &edits)?)?;
-    let number = |name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
+    let number = |name| model.number(name).unwrap_or(f64::NAN);
     Ok(Prepared {
         solid_fraction: number("solid_fraction"),
         homogeneity: number("homogeneity"),
@@ -83,7 +82,7 @@ fn hexagonal(rows: &mut Rows, grains: usize) -> Result<(), Failure> {
         "stages=[(name: \"rest\", end: For(\"1 ms\"))]".to_owned(),
     ];
     let (model, _) = stages::run(&stages::template("sample", &edits)?)?;
-    let value = number_of(&model.simulation, "solid_fraction").unwrap_or(f64::NAN);
+    let value = model.number("solid_fraction").unwrap_or(f64::NAN);
     let (metric, exact) = ("hexagonal column: solid fraction of the bulk", PI / (2.0 * 3.0_f64.sqrt()));
     rows.add(Measure::relative(Tier::ClosedForm, metric, value, exact, LATTICE));
     Ok(())

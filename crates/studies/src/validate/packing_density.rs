@@ -4,11 +4,11 @@ use super::Effort;
 use super::collapse::Collapse;
 use super::reference::named;
 use super::row::{Measure, Rows, Tier};
-use granular_core::{D2, Dim, GrainMotion, Numbers, Provides, Simulation};
+use granular_core::{D2, Dim, GrainMotion, Numbers, Provides};
 use granular_dem::{Dem, Partner};
 use granular_driver::failure::Failure;
+use granular_driver::model::Model;
 use granular_driver::parallel;
-use granular_driver::voronoi;
 use granular_tessellate::FREE_SURFACE;
 use granular_validation_data::PACKING_DENSITY;
 use std::any::Any;
@@ -91,18 +91,18 @@ pub(super) fn run(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     Ok(())
 }
 
-fn look(simulation: &Simulation) -> Result<Seen, Failure> {
-    let any: &dyn Any = simulation.solver();
+fn look(model: &Model) -> Result<Seen, Failure> {
+    let any: &dyn Any = model.simulation.solver();
     let dem = any.downcast_ref::<Dem<D2>>().expect("the template is of disks");
-    let densities = THRESHOLDS.map(|threshold| number(simulation, threshold, "bulk_density"));
+    let densities = THRESHOLDS.map(|threshold| number(model, threshold, "bulk_density"));
     // No threshold: all cells.
     let names = ["bulk_stress_yy", "bulk_density"];
-    let [stress, density] = names.map(|name| number(simulation, f64::MAX, name));
+    let [stress, density] = names.map(|name| number(model, f64::MAX, name));
     let grains = Provides::<GrainMotion<D2>>::view(dem);
     let disks: f64 = grains.iter().map(|(_, _, radius)| D2::ball_volume(radius)).sum();
     Ok(Seen {
         densities,
-        counted: number(simulation, FREE_SURFACE, "bulk_grains") / dem.len() as f64,
+        counted: number(model, FREE_SURFACE, "bulk_grains") / dem.len() as f64,
         virial: stress * disks / density / expected(dem),
     })
 }
@@ -123,8 +123,8 @@ fn expected(dem: &Dem<D2>) -> f64 {
     sum
 }
 
-fn number(simulation: &Simulation, threshold: f64, name: &str) -> f64 {
+fn number(model: &Model, threshold: f64, name: &str) -> f64 {
     let mut numbers = Numbers::wanting([name]);
-    voronoi::show(simulation.solver(), threshold, &mut numbers);
+    model.member(None).show(&model.simulation, threshold, &mut numbers);
     numbers.get(name).unwrap_or(f64::NAN)
 }

@@ -4,11 +4,9 @@ use super::stages;
 use granular_core::{Every, Flow, Numbers, Observer, ObserverError, Scheduled, Simulation};
 use granular_driver::failure::Failure;
 use granular_driver::figures::running_median;
-use granular_driver::observers::number_of;
-use granular_driver::probes;
+use granular_driver::methods::Member;
 use granular_driver::scene_file::SceneText;
 use granular_driver::statistics::larger;
-use granular_driver::voronoi;
 use granular_tessellate::FREE_SURFACE;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
@@ -93,22 +91,24 @@ pub(crate) fn record(text: &SceneText, names: &[&str], until: f64) -> Result<Rec
         stages::begin(&mut model, index);
         settled &= stages::stage(&scene, &mut model, index, dt, Vec::new())?;
     }
-    let height = number_of(&model.simulation, "height").unwrap_or(f64::NAN);
+    let height = model.number("height").unwrap_or(f64::NAN);
     let gravity = scene.gravity.iter().map(|g| g.value().powi(2)).sum::<f64>().sqrt();
     let unit = (height / gravity).sqrt();
     stages::begin(&mut model, last);
     let rows = Arc::new(Mutex::new(Vec::new()));
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-    let look = Look { names: names.clone(), unit, rows: rows.clone() };
+    let member = model.member(None).clone();
+    let look = Look { member, names: names.clone(), unit, rows: rows.clone() };
     let mut observers = vec![Scheduled::new("looks", Every::Time(unit / LOOKS), Box::new(look))];
     model.simulation.begin_segment(steps[last])?;
     model.simulation.run(until * unit, &mut observers, &AtomicBool::new(false))?;
     let rows = std::mem::take(&mut *rows.lock().expect("the observer does not panic"));
-    let width = model.column.map_or(f64::NAN, |column| column.width);
+    let width = model.column().map_or(f64::NAN, |column| column.width);
     Ok(Recorded { width, height, settled, names, rows })
 }
 
 struct Look {
+    member: Arc<dyn Member>,
     names: Vec<String>,
     unit: f64,
     rows: Arc<Mutex<Vec<Vec<f64>>>>,
@@ -117,8 +117,7 @@ struct Look {
 impl Observer for Look {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
         let mut numbers = Numbers::wanting(self.names.iter().map(String::as_str));
-        probes::show(simulation.solver(), &mut numbers);
-        voronoi::show(simulation.solver(), FREE_SURFACE, &mut numbers);
+        self.member.show(simulation, FREE_SURFACE, &mut numbers);
         let mut row = vec![simulation.clock().time_in_segment() / self.unit];
         row.extend(self.names.iter().map(|name| numbers.get(name).unwrap_or(f64::NAN)));
         self.rows.lock().expect("only this thread holds it").push(row);

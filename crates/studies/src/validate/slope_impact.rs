@@ -10,7 +10,6 @@ use granular_dem::Dem;
 use granular_driver::failure::Failure;
 use granular_driver::figures::impact::Impact;
 use granular_driver::model::Model;
-use granular_driver::observers::number_of;
 use granular_driver::parallel;
 use granular_driver::run::StageRecord;
 use granular_driver::scene_file::SceneText;
@@ -177,7 +176,7 @@ impl Pile {
             stages::begin(&mut model, index);
             rests &= stages::stage(&scene, &mut model, index, dt, Vec::new())?;
         }
-        let number = |name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
+        let number = |name| model.number(name).unwrap_or(f64::NAN);
         Ok(Self {
             sections: model.simulation.save(),
             potential: number("potential_energy"),
@@ -197,7 +196,7 @@ impl Pile {
         text.set(&format!("stages.{IMPACT}.changes.1.value={}", blow.base_friction))?;
         let (scene, mut model, steps) = stages::open(&text)?;
         model.simulation.restore(&self.sections)?;
-        let number = |model: &Model, name| number_of(&model.simulation, name).unwrap_or(f64::NAN);
+        let number = |model: &Model, name| model.number(name).unwrap_or(f64::NAN);
         let before = (number(&model, "kinetic_energy"), momentum(&model));
         let push = stages::begin(&mut model, IMPACT);
         let mass = push.map_or(f64::NAN, |push| push.mass);
@@ -205,9 +204,6 @@ impl Pile {
         let record = StageRecord {
             name: scene.stages[IMPACT].name.clone(),
             start: model.simulation.clock().time(),
-            end: None,
-            dt: steps[IMPACT],
-            ended: None,
             front: number(&model, "front"),
             height: number(&model, "height"),
             push,

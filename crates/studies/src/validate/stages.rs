@@ -3,8 +3,8 @@
 use granular_core::Scheduled;
 use granular_driver::check;
 use granular_driver::failure::Failure;
-use granular_driver::model::{self, Model, PushRecord};
-use granular_driver::observers::{Packed, Rest};
+use granular_driver::model::{Model, PushRecord};
+use granular_driver::observers;
 use granular_driver::scene::{End, Scene};
 use granular_driver::scene_file::SceneText;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub(super) fn open(text: &SceneText) -> Result<(Scene, Model, Vec<f64>), Failure
 
 /// Makes the changes at the start of a stage; returns what its pushes did, if there are any.
 pub(super) fn begin(model: &mut Model, index: usize) -> Option<PushRecord> {
-    model::begin(&model.stages[index], model.simulation.solver_mut())
+    model.begin(index).into_iter().find_map(|(_, notes)| notes.push)
 }
 
 /// Runs all stages of a scene. Returns the model at its end, and whether each stage came to the end it waited for.
@@ -73,15 +73,9 @@ pub(super) fn stage(
 ) -> Result<bool, Failure> {
     let end = scene.stages[index].end;
     let reached = Arc::new(AtomicBool::new(false));
-    let mut observers: Vec<Scheduled> = match end {
-        End::Quiet { kinetic_over_potential, within } => {
-            vec![Rest::scheduled(kinetic_over_potential, within.value(), reached.clone())]
-        }
-        End::Packed { solid_fraction, within } => {
-            vec![Packed::scheduled(solid_fraction, within.value(), reached.clone())]
-        }
-        End::For(_) | End::Steady { .. } => vec![],
-    };
+    let waiting = Some(end).filter(|end| !matches!(end, End::Steady { .. }));
+    let of_end = waiting.and_then(|end| observers::of_end(&end, model, &reached));
+    let mut observers: Vec<Scheduled> = of_end.into_iter().collect();
     let waits = !observers.is_empty();
     observers.extend(more);
     model.simulation.begin_segment(dt)?;

@@ -1,0 +1,62 @@
+//! The discrete element method, for grains.
+
+mod boundaries;
+mod build;
+mod cell;
+mod falling;
+mod grid;
+mod materials;
+mod member;
+mod pairs;
+mod probes;
+mod push;
+mod region;
+mod sample;
+mod sample_file;
+pub(crate) mod sheared;
+mod stages;
+mod stiffness;
+mod voronoi;
+mod walls;
+mod whole;
+
+pub(crate) use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
+
+use super::{Building, Claims, Member, Method, Part};
+use crate::model::Problems;
+use crate::scene::{Dimension, Scene};
+use granular_core::{D2, D3};
+use std::sync::Arc;
+
+impl Claims for DemSpec {
+    const PARTS: &'static [Part] = &[
+        Part::Sample,
+        Part::Materials,
+        Part::Pairs,
+        Part::Walls,
+        Part::Inlets,
+        Part::Outlets,
+        Part::Cell,
+        Part::StageStep,
+        Part::Saving,
+        Part::Quiet,
+        Part::Packed,
+        Part::GrainChanges,
+    ];
+    const STEP_KEY: &'static str = "steps_per_contact";
+}
+
+impl Method for DemSpec {
+    fn build(
+        &self,
+        scene: &Scene,
+        name: &str,
+        simulation: &mut Building,
+        problems: &mut Problems,
+    ) -> Option<Arc<dyn Member>> {
+        match scene.dimension {
+            Dimension::Plane => build::build::<D2>(scene, name, self, simulation, problems),
+            Dimension::Space => build::build::<D3>(scene, name, self, simulation, problems),
+        }
+    }
+}

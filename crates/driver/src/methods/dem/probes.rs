@@ -1,0 +1,93 @@
+//! Numbers that the driver works out from what a solver lends, beside those that the solver shows itself.
+
+use crate::methods::Number;
+use core::f64::consts::TAU;
+use granular_core::{Dim, FieldSink, GrainMotion, Provides, Shown, ShownAs, Solver, Vector};
+use granular_dem::Dem;
+use granular_packing::{Bulk, median_diameter};
+
+/// Numbers of grains.
+const PROBES: [Number; 3] = [
+    Number(
+        SOLID_FRACTION,
+        "1",
+        "share of the grains in the bulk: cells of 2.5 median diameters, as far from sides, bottom and surface",
+    ),
+    Number(
+        "homogeneity",
+        "1",
+        "variance of the void ratio over horizontal bands of the bulk; below 0.05 it is even",
+    ),
+    Number("median_diameter", "m", "median diameter of the grains by area or volume"),
+];
+/// Of grains in space.
+const IN_SPACE: Number = Number(
+    RADIAL_FRONT,
+    "m",
+    "distance of the front of the main mass from the z axis: mean over sectors of 10 degrees; in space",
+);
+
+const SOLID_FRACTION: &str = "solid_fraction";
+const RADIAL_FRONT: &str = "radial_front";
+/// Sectors about the z axis.
+const SECTORS: usize = 36;
+
+/// All that the solver shows, and these numbers. A periodic cell has a solid fraction of its own.
+pub(super) fn shown<D: Dim>(dem: &Dem<D>) -> Vec<Shown> {
+    let mut list = dem.shown();
+    let probes = PROBES.into_iter().chain((D::N == 3).then_some(IN_SPACE));
+    let new: Vec<Number> = probes.filter(|Number(name, ..)| !shows(&list, name)).collect();
+    list.extend(new.into_iter().map(|number| number.shown(ShownAs::Number)));
+    list
+}
+
+fn shows(list: &[Shown], name: &str) -> bool {
+    list.iter().any(|shown| shown.name == name)
+}
+
+/// Shows what a sink wants of the solver and of these numbers; works out only those.
+pub(super) fn show<D: Dim>(dem: &Dem<D>, sink: &mut dyn FieldSink) {
+    dem.show(sink);
+    if PROBES.iter().any(|Number(name, ..)| sink.wants(name)) {
+        of_grains(dem, sink);
+    }
+    if D::N == 3 && sink.wants(RADIAL_FRONT) {
+        sink.number(RADIAL_FRONT, "m", radial_front(dem));
+    }
+}
+
+fn of_grains<D: Dim>(dem: &Dem<D>, sink: &mut dyn FieldSink) {
+    let grains = Provides::<GrainMotion<D>>::view(dem);
+    if sink.wants("median_diameter") {
+        let radii: Vec<f64> = (0..grains.len()).map(|i| grains.radius(i)).collect();
+        sink.number("median_diameter", "m", median_diameter::<D>(&radii).unwrap_or(f64::NAN));
+    }
+    let bulk_wanted = sink.wants(SOLID_FRACTION) && !shows(&dem.shown(), SOLID_FRACTION);
+    if bulk_wanted || sink.wants("homogeneity") {
+        // Grains in flight are no part of the bulk, and would lift its surface.
+        let main = dem.main_mass();
+        let chosen: Vec<usize> = (0..grains.len()).filter(|&i| main[i]).collect();
+        let positions: Vec<D::Vec> = chosen.iter().map(|&i| grains.motion(i).position).collect();
+        let radii: Vec<f64> = chosen.iter().map(|&i| grains.radius(i)).collect();
+        let bulk = Bulk::of::<D>(&positions, &radii).ok();
+        let number = |of: fn(&Bulk) -> Option<f64>| bulk.as_ref().and_then(of).unwrap_or(f64::NAN);
+        if bulk_wanted {
+            sink.number(SOLID_FRACTION, "1", number(Bulk::solid_fraction));
+        }
+        sink.number("homogeneity", "1", number(Bulk::homogeneity));
+    }
+}
+
+/// Mean over the sectors that hold grains of the main mass of its farthest point in them \[m\].
+fn radial_front<D: Dim>(dem: &Dem<D>) -> f64 {
+    let grains = Provides::<GrainMotion<D>>::view(dem);
+    let mut farthest = [0.0_f64; SECTORS];
+    for (i, _) in dem.main_mass().into_iter().enumerate().filter(|(_, main)| *main) {
+        let [x, y, _] = grains.motion(i).position.padded();
+        let turn = y.atan2(x) / TAU + 0.5;
+        let sector = &mut farthest[((turn * SECTORS as f64) as usize).min(SECTORS - 1)];
+        *sector = sector.max(x.hypot(y) + grains.radius(i));
+    }
+    let met = farthest.iter().filter(|reach| **reach > 0.0);
+    met.clone().sum::<f64>() / met.count() as f64
+}

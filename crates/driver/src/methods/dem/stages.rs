@@ -1,0 +1,146 @@
+//! What happens to grains at the start of stages.
+
+use super::cell;
+use super::materials::NamedMaterials;
+use super::push::{self, PushAction};
+use crate::model::{Problems, PushRecord, nearest};
+use crate::scene::{Change, Scene, Stage};
+use granular_core::Dim;
+use granular_core::units::Acceleration;
+use granular_dem::{CellControl, Dem, MaterialId, Shaking};
+
+/// A change of the grains or walls at the start of a stage.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Action<D: Dim> {
+    /// Friction of a material.
+    Friction(MaterialId, f64),
+    /// Gravity \[m/s^2\].
+    Gravity(D::Vec),
+    /// All velocities become zero.
+    StopMotion,
+    /// All grains get a velocity.
+    Push(PushAction),
+    /// A shaking begins, or ends.
+    Shake(Option<Shaking<D>>),
+    /// A wall opens or closes.
+    Wall(String, bool),
+    /// A moving wall or an inlet starts or halts.
+    Moving(String, bool),
+    /// What drives the periodic cell.
+    Cell(CellControl),
+}
+
+/// What each stage does at its start.
+pub(super) fn actions<D: Dim>(
+    scene: &Scene,
+    openings: &[(String, String, String)],
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Vec<Vec<Action<D>>> {
+    for (path, _, stage) in openings {
+        if !scene.stages.is_empty() && !scene.stages.iter().any(|other| other.name == *stage) {
+            let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+            let hint = nearest(stage, known.iter().copied());
+            problems.add(
+                format!("{path}.opens"),
+                format!("`{stage}`, which is no stage of this scene"),
+                format!("a stage of this scene: {}", known.join(", ")),
+                hint,
+            );
+        }
+    }
+    let mut stages = Vec::new();
+    let weighty = |gravity: &[Acceleration]| gravity.iter().any(|value| value.value() != 0.0);
+    let mut falls = weighty(&scene.gravity);
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let opened = openings.iter().filter(|(.., at)| *at == stage.name);
+        let mut list: Vec<Action<D>> = opened.map(|(_, wall, _)| Action::Wall(wall.clone(), true)).collect();
+        // A shaking is over with its stage.
+        let shakes =
+            |stage: &Stage| stage.changes.iter().any(|change| matches!(change, Change::Shake { .. }));
+        if k > 0 && shakes(&scene.stages[k - 1]) {
+            list.push(Action::Shake(None));
+        }
+        for (c, change) in stage.changes.iter().enumerate() {
+            let path = format!("stages.{k}.changes.{c}");
+            if let Change::Gravity(values) = change {
+                falls = weighty(values);
+            }
+            list.extend(match change {
+                Change::Push { .. } => {
+                    let push = push::action::<D>(&path, change, (falls, scene.cell.is_some()), problems);
+                    push.map(Action::Push)
+                }
+                Change::Shake { .. } if scene.cell.is_some() => {
+                    problems.add(
+                        path,
+                        "Shake",
+                        "a scene without a cell",
+                        "gravity and walls shake a box, not a cell",
+                    );
+                    None
+                }
+                Change::Cell(change) => {
+                    let control = cell::control::<D>(&path, change, scene.cell.as_ref(), problems);
+                    control.map(Action::Cell)
+                }
+                change => action::<D>(&path, change, materials, problems),
+            });
+        }
+        stages.push(list);
+    }
+    stages
+}
+
+fn action<D: Dim>(
+    path: &str,
+    change: &Change,
+    materials: &NamedMaterials,
+    problems: &mut Problems,
+) -> Option<Action<D>> {
+    Some(match change {
+        Change::Friction { material, value } => {
+            if !(*value >= 0.0 && value.is_finite()) {
+                problems.add(format!("{path}.value"), value, "zero or more", "");
+            }
+            Action::Friction(materials.find(&format!("{path}.material"), material, problems)?, *value)
+        }
+        Change::Gravity(values) => Action::Gravity(problems.vector::<D, _>(path, values)?),
+        Change::StopMotion => Action::StopMotion,
+        Change::Shake { acceleration, from, to, pass } => {
+            let frequency = [from.value(), to.value()];
+            for (key, value) in [("from", frequency[0]), ("to", frequency[1]), ("pass", pass.value())] {
+                if value <= 0.0 {
+                    problems.add(format!("{path}.{key}"), value, "above 0", "");
+                }
+            }
+            let acceleration = problems.vector::<D, _>(&format!("{path}.acceleration"), acceleration)?;
+            let [from, to] = frequency;
+            Action::Shake(Some(Shaking { acceleration, from, to, pass: pass.value() }))
+        }
+        Change::Open(name) => Action::Wall(name.clone(), true),
+        Change::Close(name) => Action::Wall(name.clone(), false),
+        Change::Start(name) => Action::Moving(name.clone(), true),
+        Change::Halt(name) => Action::Moving(name.clone(), false),
+        // Told apart before, or of another method.
+        Change::Push { .. } | Change::Cell(_) | Change::FaceVelocity { .. } | Change::ObstacleSpin { .. } => {
+            return None;
+        }
+    })
+}
+
+pub(super) fn apply<D: Dim>(action: &Action<D>, dem: &mut Dem<D>, pushed: &mut Option<PushRecord>) {
+    match action {
+        Action::Push(action) => *pushed = Some(push::apply(action, dem, *pushed)),
+        Action::Friction(material, value) => dem.set_friction(*material, *value),
+        Action::Gravity(gravity) => dem.set_gravity(*gravity),
+        Action::StopMotion => dem.stop_motion(),
+        Action::Shake(shaking) => dem.set_shaking(*shaking).expect("the values were checked at build"),
+        Action::Wall(name, open) => _ = dem.set_open(name, *open),
+        Action::Moving(name, runs) => {
+            dem.set_moving(name, *runs);
+            dem.set_inlet(name, *runs);
+        }
+        Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
+    }
+}

@@ -1,0 +1,41 @@
+//! The lattice Boltzmann method, for a fluid.
+
+mod build;
+mod member;
+mod read;
+
+pub(crate) use granular_lbm::spec::LbmSpec;
+
+use super::{Building, Claims, Member, Method, Part};
+use crate::model::Problems;
+use crate::scene::{Dimension, Scene};
+use granular_core::Limits;
+use granular_lbm::{D2Q9, D3Q19};
+use std::sync::Arc;
+
+impl Claims for LbmSpec {
+    const PARTS: &'static [Part] = &[Part::Fluid, Part::FluidChanges];
+    const STEP_KEY: &'static str = "step";
+}
+
+impl Method for LbmSpec {
+    fn build(
+        &self,
+        scene: &Scene,
+        name: &str,
+        simulation: &mut Building,
+        problems: &mut Problems,
+    ) -> Option<Arc<dyn Member>> {
+        match scene.dimension {
+            Dimension::Plane => build::build::<D2Q9, 9>(scene, name, self, simulation, problems),
+            Dimension::Space => build::build::<D3Q19, 19>(scene, name, self, simulation, problems),
+        }
+    }
+
+    fn early_limits(&self, scene: &Scene, name: &str) -> Option<Limits> {
+        match scene.dimension {
+            Dimension::Plane => build::early_limits::<D2Q9, 9>(scene, name, self),
+            Dimension::Space => build::early_limits::<D3Q19, 19>(scene, name, self),
+        }
+    }
+}
