@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::figures::{self, Extents};
+use crate::methods::Member;
 use crate::model::{self, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, Stage};
@@ -20,18 +21,14 @@ const PROBE: Duration = Duration::from_millis(300);
 pub struct Report {
     /// Name of the scene file.
     pub scene: String,
-    /// Number and name of what a step works on.
-    pub size: (usize, &'static str),
-    /// Name of the solver.
-    pub solver: &'static str,
+    /// Solvers, in the order of their names.
+    pub solvers: Vec<Part>,
     /// Limits and bounds.
     pub limits: Limits,
     /// Steps of the stages \[s\], with their names and longest durations \[s\].
     pub stages: Vec<(String, f64, f64)>,
     /// Names of stages that push the grains, and what each push does.
     pub pushes: Vec<(String, String)>,
-    /// Memory.
-    pub memory: Memory,
     /// Longest run time with the present number of threads \[s\], from a measured burst of steps.
     pub estimated_seconds: f64,
     /// What the grains take up; none without any.
@@ -46,6 +43,28 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// Reasons to refuse the run.
     pub problems: Vec<String>,
+}
+
+/// A solver of the scene.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Name in the scene.
+    pub name: String,
+    /// Name of the solver.
+    pub solver: &'static str,
+    /// Number and name of what a step works on.
+    pub size: (usize, &'static str),
+    /// Memory, and what costs nothing.
+    pub memory: Memory,
+}
+
+impl Part {
+    fn of(scene: &Scene, model: &Model, member: &dyn Member) -> Self {
+        let solver = member.solver(&model.simulation);
+        let mut memory = solver.memory();
+        memory.left_out.extend(member.left_out(scene, &model.simulation));
+        Self { name: member.name().to_owned(), solver: solver.name(), size: solver.size(), memory }
+    }
 }
 
 /// Reads and builds a scene; problems know their place in the text.
@@ -159,16 +178,12 @@ pub fn check_and_draw(text: &SceneText, drawing: Option<&Path>) -> Result<Report
 fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result<Report, Failure> {
     let (scene, mut model) = read_to_run(text)?;
     let drawing = drawing.map(|path| figures::draw_initial(&scene, &model, path)).transpose()?;
-    let sample = Extents::of(model.simulation.solver());
+    let sample = model.members.iter().find_map(|member| Extents::of(member.solver(&model.simulation)));
     let mut warnings = figures::times_beyond(&scene, model.column());
     warnings.extend(sample.and_then(|sample| apart(&sample, figures::ends_of_walls(&scene, model.column()))));
     let (limits, steps, problems) = limits_of(&scene, &model);
     // Measuring the speed lets grains come in.
-    let size = model.simulation.solver().size();
-    let mut memory = model.simulation.solver().memory();
-    for member in &model.members {
-        memory.left_out.extend(member.left_out(&scene, &model.simulation));
-    }
+    let solvers = model.members.iter().map(|member| Part::of(&scene, &model, &**member)).collect();
     let stages: Vec<(String, f64, f64)> = scene
         .stages
         .iter()
@@ -183,12 +198,10 @@ fn measured(text: &SceneText, drawing: Option<&Path>, probe: Duration) -> Result
         if problems.is_empty() { count * seconds_per_step(&mut model, steps[0], probe) } else { f64::NAN };
     Ok(Report {
         scene: text.name().to_owned(),
-        size,
-        solver: model.simulation.solver().name(),
+        solvers,
         limits,
         stages,
         pushes,
-        memory,
         estimated_seconds,
         sample,
         gravity: scene.gravity.iter().map(|value| value.value()).collect(),
@@ -269,6 +282,11 @@ impl Report {
         refusal(&self.scene, &self.problems)
     }
 
+    /// What costs nothing since the scene does not ask for it.
+    fn left_out(&self) -> impl Iterator<Item = &String> {
+        self.solvers.iter().flat_map(|part| &part.memory.left_out)
+    }
+
     /// Where the grains are, and which way they fall.
     fn write_sample(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(sample) = &self.sample {
@@ -310,17 +328,23 @@ impl Report {
             json!({ "name": bound.name, "value": bound.value, "bound": bound.allowed, "unit": bound.unit,
                 "binds": !bound.holds(), "why": bound.why })
         });
+        let first = &self.solvers[0];
+        let solvers = self.solvers.iter().map(|part| {
+            json!({ "name": part.name, "solver": part.solver, "size": part.size.0, "memory_bytes": part.memory.bytes,
+                "bytes_per_item": part.memory.bytes_per_item, "left_out": part.memory.left_out })
+        });
         json!({
             "scene": self.scene,
-            "solver": self.solver,
-            "size": self.size.0,
+            "solver": first.solver,
+            "size": first.size.0,
+            "solvers": solvers.collect::<Vec<_>>(),
             "limits": steps.chain(bounds).collect::<Vec<_>>(),
             "pushes": pushes.collect::<Vec<_>>(),
             "advice": self.limits.advice,
-            "memory_bytes": self.memory.bytes,
-            "bytes_per_item": self.memory.bytes_per_item,
+            "memory_bytes": self.solvers.iter().map(|part| part.memory.bytes).sum::<usize>(),
+            "bytes_per_item": first.memory.bytes_per_item,
             "estimated_seconds": self.estimated_seconds,
-            "left_out": self.memory.left_out,
+            "left_out": self.left_out().collect::<Vec<_>>(),
             "sample": self.sample.map(|sample| json!({
                 "width": sample.size(0), "height": sample.size(self.up), "lowest": sample.low[self.up],
                 "highest": sample.high[self.up], "low": sample.low, "high": sample.high, "unit": "m",
@@ -335,8 +359,16 @@ impl Report {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (count, item) = self.size;
-        writeln!(f, "{}: {count} {item}s, solver {}", self.scene, self.solver)?;
+        let part = |part: &Part| format!("{} {}s, solver {}", part.size.0, part.size.1, part.solver);
+        match self.solvers.as_slice() {
+            [alone] => writeln!(f, "{}: {}", self.scene, part(alone))?,
+            several => {
+                writeln!(f, "{}", self.scene)?;
+                for solver in several {
+                    writeln!(f, "  {}: {}", solver.name, part(solver))?;
+                }
+            }
+        }
         self.write_sample(f)?;
         writeln!(f, "\nstages")?;
         for (name, dt, longest) in &self.stages {
@@ -379,17 +411,21 @@ impl fmt::Display for Report {
         for advice in &self.limits.advice {
             writeln!(f, "  {advice}")?;
         }
-        let megabytes = self.memory.bytes as f64 / 1e6;
-        writeln!(f, "\nmemory    {megabytes:.2} MB, {} bytes per {item}", self.memory.bytes_per_item)?;
+        writeln!(f)?;
+        for Part { memory, size: (_, item), .. } in &self.solvers {
+            let megabytes = memory.bytes as f64 / 1e6;
+            writeln!(f, "memory    {megabytes:.2} MB, {} bytes per {item}", memory.bytes_per_item)?;
+        }
         let threads = rayon::current_num_threads();
-        let later = if item == "grain" { "; grains that pack later take longer" } else { "" };
+        let packs = self.solvers.iter().any(|part| part.size.1 == "grain");
+        let later = if packs { "; grains that pack later take longer" } else { "" };
         writeln!(
             f,
             "run time  at most {} on {threads} threads (measured over the first steps{later})",
             duration(self.estimated_seconds)
         )?;
         writeln!(f, "\nleft out")?;
-        for left_out in &self.memory.left_out {
+        for left_out in self.left_out() {
             writeln!(f, "  {left_out}")?;
         }
         if let Some([svg, png]) = &self.drawing {

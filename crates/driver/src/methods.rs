@@ -4,7 +4,10 @@
 //! crate: the rest of the driver asks a [`Method`] what it uses of a scene, lets it build a solver, and asks the [`Member`]
 //! that comes of it for all that outputs, figures and reports show. `docs/adding-a-solver.md` leads through it.
 
+pub(crate) mod couplings;
 pub(crate) mod dem;
+#[cfg(test)]
+mod heat;
 pub(crate) mod lbm;
 mod member;
 mod parts;
@@ -63,6 +66,11 @@ impl Building {
                 Ok(simulation.find(name).expect("the solver was just put there"))
             }
         }
+    }
+
+    /// A solver that was added before.
+    pub fn find<S: Solver>(&self, name: &str) -> Option<NodeKey<S>> {
+        self.0.as_ref()?.find(name)
     }
 
     /// The simulation so far.
@@ -129,4 +137,7 @@ methods! {
     Dem(dem::DemSpec),
     /// Lattice Boltzmann method, for a fluid.
     Lbm(lbm::LbmSpec),
+    /// Heat on a grid: a toy that shows what a method takes.
+    #[cfg(test)]
+    Heat(heat::HeatSpec),
 }

@@ -3,7 +3,7 @@
 mod outputs;
 
 use crate::failure::Failure;
-use crate::methods::{self, Building, Member, Notes};
+use crate::methods::{self, Building, Member, Notes, couplings};
 use crate::scene::{Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Measured, Unit};
@@ -55,9 +55,13 @@ impl Model {
         members.iter().map(|member| (member.name().to_owned(), member.begin(simulation, stage))).collect()
     }
 
-    /// Step that the solver takes unless a stage chooses its own \[s\]; `None` for the recommended one.
+    /// Step that the solver takes unless a stage chooses its own \[s\]; `None` for the recommended one. Among several, each takes
+    /// its own within a long one.
     pub(crate) fn time_step(&self) -> Option<f64> {
-        self.members.iter().filter_map(|member| member.time_step()).reduce(f64::min)
+        match self.members.as_slice() {
+            [alone] => alone.time_step(),
+            _ => None,
+        }
     }
 }
 
@@ -174,12 +178,20 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         return Err(problems.0);
     }
     methods::refuse_unused(scene, &mut problems);
+    couplings::check(scene, &mut problems);
+    if !problems.0.is_empty() {
+        return Err(problems.0);
+    }
     let (mut building, mut members) = (Building::default(), Vec::new());
-    for (name, solver) in &scene.solvers {
-        members.extend(solver.method().build(scene, name, &mut building, &mut problems));
+    for name in couplings::order(scene) {
+        members.extend(scene.solvers[name].method().build(scene, name, &mut building, &mut problems));
     }
     let simulation = building.done().filter(|_| problems.0.is_empty());
-    let Some(simulation) = simulation else { return Err(problems.0) };
+    let Some(mut simulation) = simulation else { return Err(problems.0) };
+    members.sort_by(|a, b| a.name().cmp(b.name()));
+    if members.len() > 1 {
+        members.iter().for_each(|member| member.choose_step(&mut simulation));
+    }
     let up = if scene.dimension == Dimension::Plane { D2::UP } else { D3::UP };
     let model = Model { simulation, members, up };
     outputs::check_names(scene, &model, &mut problems);

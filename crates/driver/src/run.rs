@@ -450,18 +450,23 @@ impl Session<'_> {
         let metrics = crate::figures::metrics(self.scene, &self.model, (&self.folder, &self.records));
         let values = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.value)));
         let units = metrics.iter().map(|metric| (metric.name.clone(), json!(metric.unit)));
+        let first = self.model.member(None).solver(simulation);
+        let members = self.model.members.iter();
+        let solvers =
+            members.map(|member| (member.name().to_owned(), json!(member.solver(simulation).name())));
         let facts = json!({
             "program": PROGRAM,
             "scene": self.folder.scene_path().display().to_string(),
-            "solver": simulation.solver().name(),
+            "solver": first.name(),
+            "solvers": solvers.collect::<serde_json::Map<_, _>>(),
             "exit": exit,
             "code": failure.map(Failure::code),
             "reason": failure.map(Failure::to_string),
             "simulated_seconds": clock.time(),
             "steps": clock.step(),
             "wall_seconds": wall,
-            "item": simulation.solver().size().1,
-            "rate": steps as f64 * simulation.solver().size().0 as f64 / wall,
+            "item": first.size().1,
+            "rate": steps as f64 * first.size().0 as f64 / wall,
             "state_hash": hash_hex(state_hash(&simulation.save())),
             "metrics": Value::Object(values.collect()),
             "units": Value::Object(units.collect()),

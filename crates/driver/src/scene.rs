@@ -4,6 +4,7 @@
 
 pub mod boundaries;
 pub mod cell;
+pub mod coupling;
 pub(crate) mod files;
 pub mod fluid;
 pub mod names;
@@ -17,6 +18,7 @@ pub use crate::methods::SolverSpec;
 use crate::methods::dem::{GrainSpec, MaterialSpec, PairSpec};
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
+use coupling::CouplingSpec;
 use fluid::FluidSpec;
 use granular_core::units::{Acceleration, AngularVelocity, Energy, Frequency, Length, Time, Velocity};
 use push::PushProfileSpec;
@@ -65,9 +67,12 @@ pub struct Scene {
     pub outlets: Vec<OutletSpec>,
     /// What happens, one stage after the other.
     pub stages: Vec<Stage>,
-    /// The method, under a name of your choice, such as `{ "grains": Dem(()) }` or
-    /// `{ "water": Lbm((spacing: "1 mm")) }`. Exactly one.
+    /// The methods, under names of your choice, such as `{ "grains": Dem(()) }` or
+    /// `{ "water": Lbm((spacing: "1 mm")) }`. Several must be joined by `couplings`.
     pub solvers: BTreeMap<String, SolverSpec>,
+    /// Laws between solvers; none by default.
+    #[serde(default)]
+    pub couplings: Vec<CouplingSpec>,
     /// What to write during the run.
     #[serde(default)]
     pub outputs: Vec<Output>,

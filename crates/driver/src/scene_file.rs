@@ -1,7 +1,7 @@
 //! Reading scene files: RON text with errors that show the place, and `--set` that edits it.
 //!
 //! ```
-//! use granular::scene_file::SceneText;
+//! use granular_driver::scene_file::SceneText;
 //!
 //! #[derive(serde::Deserialize)]
 //! #[serde(deny_unknown_fields)]
@@ -16,7 +16,7 @@
 //! let typo = SceneText::new("scene.ron", "(frictoin: 0.5)");
 //! let problem = typo.parse::<Material>().err().expect("the key is unknown");
 //! assert_eq!(problem.hint.as_deref(), Some("did you mean `friction`?"));
-//! # Ok::<(), granular::scene_file::SceneProblem>(())
+//! # Ok::<(), granular_driver::scene_file::SceneProblem>(())
 //! ```
 
 mod checks;

@@ -8,13 +8,13 @@
 //! same time.
 //!
 //! ```
-//! use granular::run::Interrupt;
-//! use granular::sweep::{Plan, Request, Work};
+//! use granular_driver::run::Interrupt;
+//! use granular_driver::sweep::{Plan, Request, Work};
 //!
 //! # let folder = std::env::temp_dir().join(format!("granular-sweep-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder).unwrap();
 //! # let (scene, out) = (folder.join("scene.ron"), folder.join("sweep"));
-//! # let template = granular::TEMPLATES.iter().find(|(name, _)| *name == "disk-on-incline").unwrap();
+//! # let template = granular_driver::TEMPLATES.iter().find(|(name, _)| *name == "disk-on-incline").unwrap();
 //! # std::fs::write(&scene, template.1).unwrap();
 //! let set = vec!["materials.rock.friction=0.1,0.3".to_owned(), "stages.0.end=For(\"4 ms\")".to_owned()];
 //! let plan = Plan::of(&Request { scene, set })?;
@@ -22,7 +22,7 @@
 //! let outcome = plan.work(&out, Work::default(), &Interrupt::default())?;
 //! assert_eq!(outcome.report["runs"][1]["exit"], "done");
 //! # std::fs::remove_dir_all(folder).unwrap();
-//! # Ok::<(), granular::failure::Failure>(())
+//! # Ok::<(), granular_driver::failure::Failure>(())
 //! ```
 
 mod axis;

@@ -69,8 +69,9 @@ pub(crate) fn draw(scene: &Scene, model: &Model, path: &Path) -> Result<[PathBuf
 }
 
 fn figure(scene: &Scene, model: &Model) -> GrainFigure {
-    let solver = model.simulation.solver();
-    let all = grains(solver);
+    let solvers: Vec<&dyn Solver> =
+        model.members.iter().map(|member| member.solver(&model.simulation)).collect();
+    let all: Vec<_> = solvers.iter().flat_map(|solver| grains(*solver)).collect();
     let sizes = all.iter().fold([f64::INFINITY, 0.0], |[low, high], (_, r)| [r.min(low), r.max(high)]);
     let of_one_size = sizes[1] - sizes[0] <= 1e-9 * sizes[1];
     let grain = |(place, radius): &([f64; 3], f64)| Grain {
@@ -80,22 +81,23 @@ fn figure(scene: &Scene, model: &Model) -> GrainFigure {
     };
     let mut panel = GrainPanel { grains: all.iter().map(grain).collect(), ..GrainPanel::default() };
     let walls = Walls { scene, column: model.column(), records: &[] };
-    panel.marks = marks(scene, solver);
+    panel.marks = marks(scene, &solvers);
     // Before the first stage all walls stand, also those that will move.
     let before = -1.0;
     let reach = reach(&panel);
     panel.walls = walls.lines(before, reach);
     panel.marks.extend(named(&walls, reach));
-    let (count, item) = solver.size();
+    let sizes = solvers.iter().map(|solver| solver.size()).map(|(count, item)| format!("{count} {item}s"));
+    let sizes = sizes.collect::<Vec<_>>().join(", ");
     let quantity = if of_one_size { "" } else { "radius [mm]" };
     let mut figure = GrainFigure::new(title(scene, "before the first step"), quantity, vec![panel]);
     figure.axes = axes(scene);
-    figure.note = format!("{count} {item}s; black: walls, orange: what comes, goes, opens, or is of a fluid");
+    figure.note = format!("{sizes}; black: walls, orange: what comes, goes, opens, or is of a fluid");
     figure
 }
 
 /// What has a name or an end, besides walls.
-fn marks(scene: &Scene, solver: &dyn Solver) -> Vec<Mark> {
+fn marks(scene: &Scene, solvers: &[&dyn Solver]) -> Vec<Mark> {
     let place =
         |at: &[Length]| in_plane(scene, std::array::from_fn(|axis| at.get(axis).map_or(0.0, |x| x.value())));
     let area = |low: &[Length], high: &[Length], label: &str| {
@@ -118,7 +120,7 @@ fn marks(scene: &Scene, solver: &dyn Solver) -> Vec<Mark> {
             .collect();
         marks.push(area(&cell.low, &high, "periodic cell"));
     }
-    marks.extend(of_fluid(scene, solver));
+    marks.extend(solvers.iter().flat_map(|solver| of_fluid(scene, *solver)));
     marks
 }
 

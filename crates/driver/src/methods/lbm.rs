@@ -1,6 +1,7 @@
 //! The lattice Boltzmann method, for a fluid.
 
 mod build;
+mod carried;
 mod member;
 mod read;
 

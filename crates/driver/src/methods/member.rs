@@ -63,6 +63,11 @@ pub trait Member: Send + Sync {
         None
     }
 
+    /// Tells the simulation the step that the scene chose, when it shares a long one with others.
+    fn choose_step(&self, simulation: &mut Simulation) {
+        let _ = simulation;
+    }
+
     /// Size of the column that the sample is.
     fn column(&self) -> Option<ColumnSize> {
         None

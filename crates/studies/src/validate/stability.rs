@@ -9,11 +9,11 @@
 //! - a run that keeps all bounds finishes.
 //!
 //! ```
-//! use granular::validate::stability::{Request, lbm, verdict};
-//! use granular::validate::Effort;
+//! use granular_studies::validate::stability::{Request, lbm, verdict};
+//! use granular_studies::validate::Effort;
 //! let rows = lbm(&Request { effort: Effort::Quick, operators: vec!["regularised".to_owned()], flows: vec!["cavity".to_owned()] })?;
 //! verdict(&rows)?;
-//! # Ok::<(), granular::failure::Failure>(())
+//! # Ok::<(), granular_driver::failure::Failure>(())
 //! ```
 
 mod dem;

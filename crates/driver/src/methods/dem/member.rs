@@ -117,6 +117,12 @@ impl<D: Dim> Member for Grains<D> {
         self.time_step
     }
 
+    fn choose_step(&self, simulation: &mut Simulation) {
+        if let Some(step) = self.time_step {
+            simulation.choose_step(self.key, step);
+        }
+    }
+
     fn column(&self) -> Option<ColumnSize> {
         self.column
     }

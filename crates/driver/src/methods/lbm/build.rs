@@ -1,5 +1,6 @@
 //! From a scene to a fluid.
 
+use super::carried::Carried;
 use super::member::{Action, Water};
 use super::read::{Fluid, Reader, components};
 use super::{Building, LbmSpec, Member};
@@ -29,10 +30,12 @@ pub(super) fn build<L: Lattice<Q>, const Q: usize>(
             None
         }
     };
-    let fluid = fluid.filter(|_| problems.0.len() == before)?;
+    let mut fluid = fluid.filter(|_| problems.0.len() == before)?;
+    let carried = Carried::of(scene, name, &mut fluid.setup, simulation, problems)?;
+    let water = (name, fluid, stages);
     match spec.precision {
-        PrecisionSpec::Double => add::<L, f64, Q>(name, fluid, stages, simulation, problems),
-        PrecisionSpec::Single => add::<L, f32, Q>(name, fluid, stages, simulation, problems),
+        PrecisionSpec::Double => add::<L, f64, Q>(water, carried, simulation, problems),
+        PrecisionSpec::Single => add::<L, f32, Q>(water, carried, simulation, problems),
     }
 }
 
@@ -90,9 +93,8 @@ fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Vec<Vec<Action<D>>
 
 /// Adds the lattice, with the paths of obstacles that move coupled to it.
 fn add<L: Lattice<Q>, T: Real, const Q: usize>(
-    name: &str,
-    fluid: Fluid<L::Dim>,
-    stages: Vec<Vec<Action<L::Dim>>>,
+    (name, fluid, stages): (&str, Fluid<L::Dim>, Vec<Vec<Action<L::Dim>>>),
+    carried: Vec<Carried<L::Dim>>,
     simulation: &mut Building,
     problems: &mut Problems,
 ) -> Option<Arc<dyn Member>> {
@@ -105,7 +107,8 @@ fn add<L: Lattice<Q>, T: Real, const Q: usize>(
         }
     };
     let before = problems.0.len();
-    check_places(&lbm, fluid.bodies.is_empty(), problems);
+    let all_rest = fluid.bodies.is_empty() && carried.is_empty();
+    check_places(&lbm, all_rest, problems);
     if problems.0.len() > before {
         return None;
     }
@@ -115,6 +118,9 @@ fn add<L: Lattice<Q>, T: Real, const Q: usize>(
     let key = added.map_err(|error| problems.add("solvers", error.place, error.reason, "")).ok()?;
     if !fluid.bodies.is_empty() {
         move_bodies(key, fluid.bodies, simulation, problems)?;
+    }
+    for grains in carried {
+        grains.couple(key, simulation, problems)?;
     }
     Some(Arc::new(Water { name: name.to_owned(), key, stages }))
 }
