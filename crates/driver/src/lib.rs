@@ -17,6 +17,7 @@ pub mod methods;
 pub mod model;
 pub mod observers;
 pub mod parallel;
+pub mod parts;
 mod progress;
 pub mod run;
 pub mod scene;

@@ -14,7 +14,7 @@ mod parts;
 
 pub use member::{Averages, Member, NoGrid, Notes, Number};
 pub use parts::Part;
-pub(crate) use parts::refuse_unused;
+pub(crate) use parts::{given, refuse_unused};
 
 use crate::model::Problems;
 use crate::scene::Scene;

@@ -4,6 +4,7 @@ mod outputs;
 
 use crate::failure::Failure;
 use crate::methods::{self, Building, Member, Notes, couplings};
+use crate::parts;
 use crate::scene::{Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
 use granular_core::units::{Measured, Unit};
@@ -178,6 +179,11 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         return Err(problems.0);
     }
     methods::refuse_unused(scene, &mut problems);
+    if parts::groups(scene).len() > 1 {
+        let names: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
+        let hint = "a run takes solvers that nothing joins apart, each into a folder of its own";
+        problems.add("solvers", names.join(", "), "solvers that are joined by `couplings`", hint);
+    }
     couplings::check(scene, &mut problems);
     if !problems.0.is_empty() {
         return Err(problems.0);

@@ -1,6 +1,7 @@
 //! Running a scene, stage by stage, and taking an interrupted run up again.
 
 mod records;
+mod several;
 
 pub use records::{RecordedStage, Seen, StageRecord};
 
@@ -77,7 +78,7 @@ struct Session<'a> {
     watcher: Option<Section>,
 }
 
-/// Runs a scene in a new folder.
+/// Runs a scene in a new folder. Solvers that nothing joins run one after the other, each in a folder of its own within it.
 ///
 /// # Errors
 /// When the scene is wrong or refused, a guard stops it, something cannot be written, or the run
@@ -86,6 +87,19 @@ pub fn run(
     text: &SceneText,
     out: &Path,
     force: bool,
+    quiet: bool,
+    interrupt: &Interrupt,
+) -> Result<Value, Failure> {
+    match crate::parts::of(text)?.as_slice() {
+        [_] => run_one(text, (out, force), quiet, interrupt),
+        _ => several::run(text, (out, force), quiet, interrupt),
+    }
+}
+
+/// Runs a scene whose solvers share a simulation.
+fn run_one(
+    text: &SceneText,
+    (out, force): (&Path, bool),
     quiet: bool,
     interrupt: &Interrupt,
 ) -> Result<Value, Failure> {
@@ -111,7 +125,26 @@ pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, F
     if folder.facts()?["exit"] == "done" {
         return Err(Failure::io(out.display(), "this run is done; there is nothing to resume"));
     }
-    let (scene, model) = check::read(&text)?;
+    match crate::parts::of(&text)?.as_slice() {
+        [_] => resume_in(folder, &text, quiet, interrupt),
+        _ => several::go_on(&folder, quiet, interrupt),
+    }
+}
+
+/// Takes up the run of a scene whose solvers share a simulation.
+fn resume_one(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, Failure> {
+    let folder = RunFolder::take_up(out)?;
+    let text = SceneText::read(folder.scene_path())?;
+    resume_in(folder, &text, quiet, interrupt)
+}
+
+fn resume_in(
+    folder: RunFolder,
+    text: &SceneText,
+    quiet: bool,
+    interrupt: &Interrupt,
+) -> Result<Value, Failure> {
+    let (scene, model) = check::read(text)?;
     let (_, steps, _) = check::limits_of(&scene, &model);
     if !folder.has_snapshots() {
         if !quiet {
@@ -142,6 +175,10 @@ pub fn resume(out: &Path, quiet: bool, interrupt: &Interrupt) -> Result<Value, F
 pub fn plot(out: &Path) -> Result<Drawn, Failure> {
     let folder = RunFolder::open(out)?;
     let text = SceneText::read(folder.scene_path())?;
+    let parts = crate::parts::of(&text)?;
+    if parts.len() > 1 {
+        return several::plot(&folder, &parts);
+    }
     let (scene, model) = check::read(&text)?;
     let records: Vec<RecordedStage> = serde_json::from_value(folder.facts()?["stages"].clone())
         .map_err(|error| Failure::io(out.display(), format!("run.json has no stages: {error}")))?;

@@ -115,6 +115,11 @@ impl SceneText {
         edit::set(self, assignment)
     }
 
+    /// Takes the value at a path out, with its key: a path as for [`SceneText::set`]. Nothing where there is none.
+    pub fn remove(&mut self, path: &str) {
+        edit::remove(self, path);
+    }
+
     /// Where the value at a path is written.
     pub fn locate(&self, path: &str) -> Option<Span> {
         let (path, rest) = parse_path(path)?;

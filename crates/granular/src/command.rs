@@ -12,8 +12,8 @@ use granular_core::Shown;
 use granular_driver::failure::Failure;
 use granular_driver::run::Interrupt;
 use granular_driver::scene_file::SceneText;
-use granular_driver::{check, folder, machine, run};
-use serde_json::{Value, json};
+use granular_driver::{check, folder, machine, parts, run};
+use serde_json::{Map, Value, json};
 use signal_hook::iterator::Signals;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -163,17 +163,7 @@ impl Verb {
     fn execute(self, common: &Common) -> Result<(), Failure> {
         match self {
             Self::New { template, list: _ } => new(common, template.as_deref()),
-            Self::Check { scene, edits, draw } => {
-                let checked = check::check_and_draw(&read(&scene, &edits)?, draw.as_deref());
-                let report = checked.inspect_err(|failure| {
-                    // Refused before there was a report.
-                    if common.json && matches!(failure, Failure::Refused(_)) {
-                        print(&(pretty(&failure_json(failure)) + "\n"));
-                    }
-                })?;
-                show(common, &report.to_json(), || report.to_string());
-                if report.problems.is_empty() { Ok(()) } else { Err(report.refusal()) }
-            }
+            Self::Check { scene, edits, draw } => check(common, &read(&scene, &edits)?, draw.as_deref()),
             Self::Run { scene, edits, out, force } => {
                 let text = read(&scene, &edits)?;
                 let out = out.unwrap_or_else(|| default_folder(&scene));
@@ -194,6 +184,39 @@ impl Verb {
             Self::Info { path } => info(common, path.as_deref()),
         }
     }
+}
+
+/// Checks a scene; one of several solvers that nothing joins part by part.
+fn check(common: &Common, text: &SceneText, draw: Option<&Path>) -> Result<(), Failure> {
+    let parts = parts::of(text)?;
+    let (mut reports, mut refused) = (Map::new(), None);
+    for part in &parts {
+        let stem = draw.map(|path| match part.name.as_str() {
+            "" => path.to_owned(),
+            name => path
+                .with_extension("")
+                .with_file_name(format!("{}-{name}", path.file_stem().unwrap_or_default().to_string_lossy())),
+        });
+        let report = check::check_and_draw(&part.text, stem.as_deref()).inspect_err(|failure| {
+            // Refused before there was a report.
+            if common.json && matches!(failure, Failure::Refused(_)) {
+                print(&(pretty(&failure_json(failure)) + "\n"));
+            }
+        })?;
+        if !report.problems.is_empty() {
+            refused.get_or_insert(report.refusal());
+        }
+        if !common.json {
+            let head = if part.name.is_empty() { String::new() } else { format!("== {}\n", part.name) };
+            print(&format!("{head}{report}"));
+        }
+        reports.insert(part.name.clone(), report.to_json());
+    }
+    if common.json {
+        let whole = if parts.len() == 1 { reports.remove("").unwrap_or_default() } else { json!(reports) };
+        print(&(pretty(&whole) + "\n"));
+    }
+    refused.map_or(Ok(()), Err)
 }
 
 fn read(path: &Path, edits: &Edits) -> Result<SceneText, Failure> {
@@ -365,21 +388,24 @@ fn info(common: &Common, path: Option<&Path>) -> Result<(), Failure> {
 
 /// Lists all that a scene can show.
 fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
-    let (_, model) = check::read(&SceneText::read(path)?)?;
     let mut list = Vec::new();
-    for member in &model.members {
-        let all = member.shown(&model.simulation).into_iter();
-        list.extend(all.map(|shown| (member.name(), format!("{:?}", shown.kind), shown)));
-        let averages = member.shown_on_grids(&model.simulation).into_iter();
-        list.extend(averages.map(|shown| (member.name(), "Grid".to_owned(), shown)));
+    for part in parts::of(&SceneText::read(path)?)? {
+        let (_, model) = check::read(&part.text)?;
+        for member in &model.members {
+            let of = |kind: String, shown: Shown| (member.name().to_owned(), kind, shown);
+            let all = member.shown(&model.simulation).into_iter();
+            list.extend(all.map(|shown| of(format!("{:?}", shown.kind), shown)));
+            let averages = member.shown_on_grids(&model.simulation).into_iter();
+            list.extend(averages.map(|shown| of("Grid".to_owned(), shown)));
+        }
     }
     let rows: Vec<Value> = list
         .iter()
         .map(|(of, kind, s)| json!({ "of": of, "name": s.name, "unit": s.unit, "kind": kind, "meaning": s.meaning }))
         .collect();
     show(common, &json!(rows), || {
-        let several = model.members.len() > 1;
-        let line = |(of, kind, s): &(&str, String, Shown)| {
+        let several = list.iter().any(|(of, ..)| *of != list[0].0);
+        let line = |(of, kind, s): &(String, String, Shown)| {
             let of = if several { format!("{of:<12} ") } else { String::new() };
             format!("{of}{kind:<8} {:<28} {:<8} {}\n", s.name, s.unit, s.meaning)
         };

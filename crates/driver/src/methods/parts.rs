@@ -56,13 +56,15 @@ pub(crate) fn refuse_unused(scene: &Scene, problems: &mut Problems) {
 }
 
 /// A part that a scene gives.
-struct Given {
-    path: String,
-    part: Part,
+pub(crate) struct Given {
+    /// Path of the scene.
+    pub(crate) path: String,
+    pub(crate) part: Part,
     value: String,
 }
 
-fn given(scene: &Scene) -> Vec<Given> {
+/// All parts that a scene gives of which not every method has a use.
+pub(crate) fn given(scene: &Scene) -> Vec<Given> {
     let keys = [
         ("sample", Part::Sample, scene.sample.is_some()),
         ("materials", Part::Materials, !scene.materials.is_empty()),

@@ -43,6 +43,19 @@ pub(super) fn set(scene: &mut SceneText, assignment: &str) -> Result<(), ScenePr
     Ok(())
 }
 
+/// Takes a value out with its key, and the comma behind it. Nothing where there is none.
+pub(super) fn remove(scene: &mut SceneText, path: &str) {
+    let Some((path, _)) = parse_path(path) else { return };
+    let tree = Tree::of(&scene.text);
+    let Some(root) = &tree.root else { return };
+    let Found::Value { node, key } = find(&scene.text, root, &path) else { return };
+    let start = key.map_or(node.span.start, |key| key.span.start);
+    let next = tree.token_at(node.span.end).filter(|token| &scene.text[token.span.clone()] == ",");
+    let end = next.map_or(node.span.end, |comma| comma.span.end);
+    replace(scene, start..end, "", "");
+    scene.edits.pop();
+}
+
 fn replace(scene: &mut SceneText, span: Span, written: &str, assignment: &str) {
     scene.text.replace_range(span.clone(), written);
     let new_end = span.start + written.len();

@@ -39,6 +39,9 @@ const FAMILIES: &[(&str, &str)] = &[
     ("multiversion", "multiversion-macros rustversion proc-macro2 quote syn unicode-ident"),
 ];
 
+/// Libraries of methods, which only the folders of methods may name.
+const METHODS: [&str; 3] = ["granular_dem", "granular_lbm", "granular_coupling"];
+
 /// Lines that a source file may have, with its tests.
 const LONGEST_FILE: usize = 700;
 
@@ -113,6 +116,18 @@ fn sources() -> Vec<(PathBuf, String)> {
     found.retain(|(path, _)| path.components().any(|part| part.as_os_str() == "src"));
     assert!(found.len() > 100, "the crates are there");
     found
+}
+
+#[test]
+fn only_the_folders_of_methods_name_their_crates() {
+    let mut found = Vec::new();
+    for (path, text) in files_below(&["crates/driver/src", "crates/granular/src"], "rs") {
+        let is_method = path.components().any(|part| part.as_os_str() == "methods");
+        if !is_method && METHODS.iter().any(|name| text.contains(name)) {
+            found.push(shown(&path));
+        }
+    }
+    assert!(found.is_empty(), "{} name the crate of a method", found.join(", "));
 }
 
 fn shown(path: &Path) -> String {

@@ -125,3 +125,30 @@ fn a_sweep_collects_what_it_measures() {
     let of = |k: usize| outcome.report["runs"][k]["measures"]["largest_temperature"].as_f64().unwrap();
     assert!((of(1) / of(0).powi(2) - 1.0).abs() < 0.02, "{} {}", of(0), of(1));
 }
+
+#[test]
+fn solvers_that_nothing_joins_run_in_folders_of_their_own_and_are_resumed() {
+    let two = "solvers={ \"cold\": Heat((size: \"0.1 m\", cells: 16, diffusivity: 1e-4)), \
+               \"warm\": Heat((size: \"0.1 m\", cells: 16, diffusivity: 2e-4)) }";
+    let text = scene(&[two, "outputs.1.of=warm"]);
+    let folder = Folder::new("several");
+    let whole = done(&text, &folder.0.join("whole"));
+    let of = |name: &str| whole["metrics"][name].as_f64().unwrap();
+    let ratio = of("warm.largest_temperature") / of("cold.largest_temperature").powi(2);
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    assert!(
+        folder.0.join("whole/cold/series.csv").is_file() && folder.0.join("whole/warm/map.svg").is_file()
+    );
+    assert!(!folder.0.join("whole/cold/map.svg").exists());
+    // Told to stop before its first step, it goes on with all parts.
+    let interrupt = Interrupt::default();
+    interrupt.raised.store(true, Ordering::Relaxed);
+    let part = folder.0.join("part");
+    assert!(matches!(run::run(&text, &part, false, true, &interrupt), Err(Failure::Interrupted { .. })));
+    let resumed = run::resume(&part, true, &Interrupt::default()).unwrap();
+    assert_eq!((&resumed["state_hash"], &resumed["exit"]), (&whole["state_hash"], &"done".into()));
+    assert_eq!(run::plot(&part).unwrap().paths.len(), 3);
+    let slash = scene(&[&two.replace("cold", "a/b"), "outputs.1.of=warm"]);
+    let refused = run::run(&slash, &folder.0.join("slash"), false, true, &Interrupt::default()).unwrap_err();
+    assert!(refused.to_string().contains("`a/b`"), "{refused}");
+}
