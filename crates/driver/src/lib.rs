@@ -6,6 +6,7 @@
 pub mod calibrate;
 pub mod chance;
 pub mod check;
+pub mod compare;
 mod effort;
 pub mod failure;
 pub mod figures;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod calibrate;
+mod compare;
 mod plot;
 mod summary;
 mod sweep;
@@ -93,6 +94,8 @@ enum Verb {
     Sweep(sweep::Sweep),
     /// Draw the figures of a run again, or a figure of a sweep.
     Plot(plot::Plot),
+    /// Lay runs side by side: series, profiles and grids of run folders, and tables from elsewhere, in one figure and one table.
+    Compare(compare::Compare),
     /// Compare the program with known answers; exit code 1 when a required one is missed.
     Validate(validate::Validate),
     /// Find what a continuum of the grains of a scene is like.
@@ -177,6 +180,7 @@ impl Verb {
                 Ok(())
             }
             Self::Plot(verb) => verb.execute(common),
+            Self::Compare(verb) => verb.execute(common),
             Self::Sweep(verb) => verb.execute(common),
             Self::Bench(verb) => verb.execute(common),
             Self::Calibrate(calibrate) => calibrate.execute(common),
