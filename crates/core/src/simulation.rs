@@ -1,51 +1,25 @@
 //! Solvers with a clock, and the loop that runs them between outputs.
 
-mod nodes;
+mod clock;
+mod edge;
+mod graph;
+mod node;
+mod sharing;
 #[cfg(test)]
 mod tests;
 
-pub use nodes::NodeKey;
+pub use clock::Clock;
+pub use node::NodeKey;
 
 use crate::blocks::inside_pool;
 use crate::exchange::{Coupling, CouplingError};
 use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, Solver, StepError, check_step};
-use nodes::{Graph, Node};
+use graph::Graph;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-
-/// Simulated time. Inside a segment it is `start + k * dt`, not a running sum.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
-    start: f64,
-    dt: f64,
-    steps_in_segment: u64,
-    step: u64,
-}
-
-impl Clock {
-    /// Simulated time \[s\].
-    pub fn time(&self) -> f64 {
-        self.start + self.steps_in_segment as f64 * self.dt
-    }
-
-    /// Step of the present segment \[s\]; zero before the first.
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    /// Steps taken since the start of the run.
-    pub fn step(&self) -> u64 {
-        self.step
-    }
-
-    /// Time since the start of the present segment \[s\].
-    pub fn time_in_segment(&self) -> f64 {
-        self.steps_in_segment as f64 * self.dt
-    }
-}
 
 /// How a segment ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,9 +67,10 @@ impl From<ObserverError> for RunError {
 
 /// Solvers with a clock, and the couplings between them.
 ///
-/// Several solvers share a long step. Those that are the slow end of a [`Coupling`] take it whole; the
-/// others take it in equal steps, as many as their own limits ask for. The first solver is the one that
-/// observers look at.
+/// Solvers that couplings join share a long step: those that are the slow end of a [`Coupling`] take it whole, the
+/// others in equal steps, as many as their own limits ask for. Solvers that nothing joins do not shorten each other's
+/// steps: the step of the simulation, after which its clock goes on and observers may look, is the longest of them, and
+/// the others take several within it. The first solver is the one that observers look at.
 pub struct Simulation {
     graph: Graph,
     clock: Clock,
@@ -121,7 +96,7 @@ impl Simulation {
     pub fn named(name: impl Into<String>, solver: Box<dyn Solver>) -> Self {
         let clock = Clock { start: 0.0, dt: 0.0, steps_in_segment: 0, step: 0 };
         let mut simulation = Self { graph: Graph::default(), clock };
-        simulation.graph.nodes.push(Node::new(name.into(), solver));
+        simulation.graph.add(name.into(), solver);
         simulation
     }
 
@@ -138,7 +113,7 @@ impl Simulation {
         if self.graph.nodes.iter().any(|node| node.name == name) {
             return Err(CouplingError::new(name, "a solver of this name is there already"));
         }
-        self.graph.nodes.push(Node::new(name, Box::new(solver)));
+        self.graph.add(name, Box::new(solver));
         Ok(NodeKey::new(self.graph.nodes.len() - 1))
     }
 
@@ -179,12 +154,12 @@ impl Simulation {
 
     /// A solver by its key.
     pub fn get<S: Solver>(&self, key: NodeKey<S>) -> &S {
-        nodes::typed(&self.graph.nodes[key.index])
+        self.graph.nodes[key.index].typed()
     }
 
     /// A solver by its key, to change it between segments.
     pub fn get_mut<S: Solver>(&mut self, key: NodeKey<S>) -> &mut S {
-        nodes::typed_mut(&mut self.graph.nodes[key.index])
+        self.graph.nodes[key.index].typed_mut()
     }
 
     /// Names of all solvers with what they are.
@@ -192,12 +167,12 @@ impl Simulation {
         self.graph.nodes.iter().map(|node| (node.name.as_str(), node.solver.as_ref()))
     }
 
-    /// Sets the longest step \[s\] of a solver that takes several within the long step; from the next segment on.
+    /// Sets the longest step \[s\] of a solver that takes several within that of the simulation; from the next segment on.
     pub fn choose_step<S: Solver>(&mut self, key: NodeKey<S>, dt: f64) {
         self.graph.nodes[key.index].chosen = Some(dt);
     }
 
-    /// Limits on the long step, and all bounds.
+    /// Limits on the step of the simulation, and all bounds. Solvers that take several steps within it do not limit it.
     pub fn limits(&self, report: &mut Limits) {
         self.graph.limits(report);
     }
@@ -257,11 +232,11 @@ impl Simulation {
     /// # Errors
     /// When the solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        // One solver alone knows better whether it has work for more threads than one.
-        if self.graph.nodes.len() > 1 {
-            inside_pool(|| self.graph.advance(steps))?;
-        } else {
+        // Solvers alone know better whether they have work for more threads than one.
+        if self.graph.edges.is_empty() {
             self.graph.advance(steps)?;
+        } else {
+            inside_pool(|| self.graph.advance(steps))?;
         }
         self.clock.steps_in_segment += steps;
         self.clock.step += steps;

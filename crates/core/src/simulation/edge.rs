@@ -1,0 +1,70 @@
+//! A coupling in a simulation.
+
+use super::node::{Node, NodeKey};
+use crate::exchange::Coupling;
+use crate::snapshot::{Section, SnapshotError};
+use crate::solver::{Limits, Solver, StepError};
+
+/// A coupling whose two solvers are known by their places.
+pub(super) trait Edge: Send {
+    fn law(&self) -> &'static str;
+    /// Places of the slow and of the fast solver.
+    fn places(&self) -> [usize; 2];
+    fn begin(&mut self, long_step: f64);
+    fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
+    fn backward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
+    fn limits(&self, nodes: &[Node], report: &mut Limits);
+    fn save(&self, to: &mut Section);
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError>;
+}
+
+pub(super) struct Typed<Slow, Fast, Law> {
+    pub(super) slow: NodeKey<Slow>,
+    pub(super) fast: NodeKey<Fast>,
+    pub(super) law: Law,
+}
+
+impl<Slow: Solver, Fast: Solver, Law> Typed<Slow, Fast, Law> {
+    pub(super) fn ends<'a>(&self, nodes: &'a mut [Node]) -> (&'a mut Slow, &'a mut Fast) {
+        let [slow, fast] = nodes
+            .get_disjoint_mut([self.slow.index, self.fast.index])
+            .expect("the ends of a coupling are two nodes of this simulation");
+        (slow.typed_mut(), fast.typed_mut())
+    }
+}
+
+impl<Slow: Solver, Fast: Solver, Law: Coupling<Slow, Fast>> Edge for Typed<Slow, Fast, Law> {
+    fn law(&self) -> &'static str {
+        self.law.name()
+    }
+
+    fn places(&self) -> [usize; 2] {
+        [self.slow.index, self.fast.index]
+    }
+
+    fn begin(&mut self, long_step: f64) {
+        self.law.begin(long_step);
+    }
+
+    fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError> {
+        let (slow, fast) = self.ends(nodes);
+        self.law.forward(fast, slow)
+    }
+
+    fn backward(&mut self, nodes: &mut [Node]) -> Result<(), StepError> {
+        let (slow, fast) = self.ends(nodes);
+        self.law.backward(slow, fast)
+    }
+
+    fn limits(&self, nodes: &[Node], report: &mut Limits) {
+        self.law.limits(nodes[self.slow.index].typed(), nodes[self.fast.index].typed(), report);
+    }
+
+    fn save(&self, to: &mut Section) {
+        self.law.save(to);
+    }
+
+    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+        self.law.restore(from)
+    }
+}
