@@ -41,7 +41,7 @@ pub use exchange::{Accepts, Coupling, CouplingError, Provides, Quantity};
 pub use field::{FieldRef, FieldSink, Location, Numbers, Shown, ShownAs};
 pub use glam;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
-pub use quantity::{GrainMotion, Grains, Motion, ObstacleMotion};
+pub use quantity::{GrainMotion, Grains, HydroLoad, Load, LoadsMut, Motion, ObstacleMotion};
 pub use simulation::{Clock, Ending, NodeKey, RunError, Simulation};
 pub use snapshot::{Section, SnapshotError, Stored};
 pub use solver::{Bound, Limits, Memory, Solver, StepError, StepLimit, StepRule};
