@@ -49,10 +49,17 @@ pub trait Accepts<Q: Quantity> {
     fn view_mut(&mut self) -> Q::ViewMut<'_>;
 }
 
-/// A law between a solver with long steps and one with short steps, which takes several within one of the other.
+/// A law between a slow solver, which takes long steps, and a fast one, which takes several within each of them.
 ///
-/// In each long step: all laws go forward, the slow solvers step, all laws go backward, the fast solvers step.
-/// A law owns its scratch and its saved state; laws add to inputs, so that two may feed one solver.
+/// In each long step the laws go forward, the slow solver steps, the laws go backward, and the fast solver steps. A solver
+/// may be slow to one and fast to another: each of its steps is then a long step for the solvers that are fast to it.
+///
+/// Inputs are built anew for each call of [`Solver::advance`](crate::Solver::advance): they are cleared, and then every law
+/// that ends on the solver adds to them, so that several laws may feed one solver. For a fast solver that takes its steps one
+/// at a time, since something happens within them, `backward` is therefore called before each of them, with the slow solver
+/// unchanged: it adds the same again. What counts once per long step is booked in `forward`.
+///
+/// A law owns its scratch and its saved state.
 pub trait Coupling<Slow, Fast>: Send + 'static {
     /// What the law is called.
     fn name(&self) -> &'static str;
@@ -70,12 +77,28 @@ pub trait Coupling<Slow, Fast>: Send + 'static {
     /// # Errors
     /// When the state of the fast solver makes no sense to the slow one.
     fn forward(&mut self, fast: &Fast, slow: &mut Slow) -> Result<(), StepError>;
-    /// After the slow step. Loads are means over it, held until replaced.
+    /// After the slow step, before steps of the fast solver. Loads are means over the slow step.
     ///
     /// # Errors
     /// When the state of the slow solver makes no sense to the fast one.
     fn backward(&mut self, slow: &Slow, fast: &mut Fast) -> Result<(), StepError> {
         let _ = (slow, fast);
+        Ok(())
+    }
+    /// Whether the law acts within the long step: the fast solver then takes its steps one at a time, and
+    /// [`Coupling::during`] is called before each.
+    fn acts_within(&self) -> bool {
+        false
+    }
+    /// Before step `k` of the `n` steps that the fast solver takes within one of the slow solver, from 0 to n - 1, after
+    /// `backward`: for loads that follow the fast solver, and for means over its steps, which a law sums up here. What it
+    /// adds to inputs holds for this one step. (With several slow solvers, `n` counts within the step of the one that has the
+    /// shortest.)
+    ///
+    /// # Errors
+    /// When the state of the solvers makes no sense to the law.
+    fn during(&mut self, k: u64, n: u64, slow: &Slow, fast: &mut Fast) -> Result<(), StepError> {
+        let _ = (k, n, slow, fast);
         Ok(())
     }
     /// Limits that the law sets on the long step.

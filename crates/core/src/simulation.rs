@@ -4,6 +4,7 @@ mod clock;
 mod edge;
 mod graph;
 mod node;
+mod order;
 mod sharing;
 #[cfg(test)]
 mod tests;
@@ -127,7 +128,8 @@ impl Simulation {
     /// Couples two solvers by a law.
     ///
     /// # Errors
-    /// When they do not fit, or one is the slow end of one law and the fast end of another.
+    /// When they do not fit, when couplings form a ring in which each solver is slow to the next, or when a solver is fast
+    /// to two that take steps of their own beside each other.
     pub fn couple<Slow: Solver, Fast: Solver>(
         &mut self,
         slow: NodeKey<Slow>,

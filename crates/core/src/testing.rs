@@ -26,6 +26,8 @@ mod tests;
 mod watch;
 
 pub use allocator::CountingAllocator;
+#[cfg(test)]
+pub(crate) use contract::in_pool;
 pub use contract::{Breach, Contract};
 pub use loads::loads_follow_their_grains;
 

@@ -5,14 +5,16 @@ use crate::exchange::Coupling;
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, Solver, StepError};
 
-/// A coupling whose two solvers are known by their places.
+/// A coupling whose two solvers are known by their numbers.
 pub(super) trait Edge: Send {
     fn law(&self) -> &'static str;
-    /// Places of the slow and of the fast solver.
-    fn places(&self) -> [usize; 2];
+    /// Numbers of the slow and of the fast solver.
+    fn ends(&self) -> [usize; 2];
     fn begin(&mut self, long_step: f64);
     fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
     fn backward(&mut self, nodes: &mut [Node]) -> Result<(), StepError>;
+    fn acts_within(&self) -> bool;
+    fn during(&mut self, k: u64, n: u64, nodes: &mut [Node]) -> Result<(), StepError>;
     fn limits(&self, nodes: &[Node], report: &mut Limits);
     fn save(&self, to: &mut Section);
     fn restore(&mut self, from: &Section) -> Result<(), SnapshotError>;
@@ -25,7 +27,7 @@ pub(super) struct Typed<Slow, Fast, Law> {
 }
 
 impl<Slow: Solver, Fast: Solver, Law> Typed<Slow, Fast, Law> {
-    pub(super) fn ends<'a>(&self, nodes: &'a mut [Node]) -> (&'a mut Slow, &'a mut Fast) {
+    pub(super) fn solvers<'a>(&self, nodes: &'a mut [Node]) -> (&'a mut Slow, &'a mut Fast) {
         let [slow, fast] = nodes
             .get_disjoint_mut([self.slow.index, self.fast.index])
             .expect("the ends of a coupling are two nodes of this simulation");
@@ -38,7 +40,7 @@ impl<Slow: Solver, Fast: Solver, Law: Coupling<Slow, Fast>> Edge for Typed<Slow,
         self.law.name()
     }
 
-    fn places(&self) -> [usize; 2] {
+    fn ends(&self) -> [usize; 2] {
         [self.slow.index, self.fast.index]
     }
 
@@ -47,13 +49,22 @@ impl<Slow: Solver, Fast: Solver, Law: Coupling<Slow, Fast>> Edge for Typed<Slow,
     }
 
     fn forward(&mut self, nodes: &mut [Node]) -> Result<(), StepError> {
-        let (slow, fast) = self.ends(nodes);
+        let (slow, fast) = self.solvers(nodes);
         self.law.forward(fast, slow)
     }
 
     fn backward(&mut self, nodes: &mut [Node]) -> Result<(), StepError> {
-        let (slow, fast) = self.ends(nodes);
+        let (slow, fast) = self.solvers(nodes);
         self.law.backward(slow, fast)
+    }
+
+    fn acts_within(&self) -> bool {
+        self.law.acts_within()
+    }
+
+    fn during(&mut self, k: u64, n: u64, nodes: &mut [Node]) -> Result<(), StepError> {
+        let (slow, fast) = self.solvers(nodes);
+        self.law.during(k, n, slow, fast)
     }
 
     fn limits(&self, nodes: &[Node], report: &mut Limits) {

@@ -1,8 +1,8 @@
 //! The solvers of a simulation and the couplings between them.
 
 use super::edge::{Edge, Typed};
-use super::node::{End, Node, NodeKey};
-use super::sharing::Group;
+use super::node::{Node, NodeKey};
+use super::order::Group;
 use crate::exchange::{Coupling, CouplingError};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Solver, StepError};
@@ -29,20 +29,10 @@ impl Graph {
         law: Law,
     ) -> Result<(), CouplingError> {
         let mut edge = Typed { slow, fast, law };
-        if slow.index == fast.index {
-            return Err(CouplingError::new(edge.law.name(), "both ends are one solver"));
-        }
-        let ends = [(slow.index, End::Slow), (fast.index, End::Fast)];
-        let clash = ends.iter().find(|(index, end)| ![End::Free, *end].contains(&self.nodes[*index].end));
-        if let Some((index, _)) = clash {
-            let place = self.nodes[*index].name.clone();
-            return Err(CouplingError::new(place, "a solver cannot be slow to one and fast to another"));
-        }
-        let (a, b) = edge.ends(&mut self.nodes);
+        let ends = edge.ends();
+        self.check_order(edge.law.name(), ends)?;
+        let (a, b) = edge.solvers(&mut self.nodes);
         edge.law.attach(a, b)?;
-        for (index, end) in ends {
-            self.nodes[index].end = end;
-        }
         self.edges.push(Box::new(edge));
         self.regroup();
         Ok(())
@@ -50,14 +40,62 @@ impl Graph {
 
     /// Takes `steps` steps of the simulation, one group after the other: they do not see each other.
     pub(super) fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        let Self { nodes, edges, groups } = self;
-        groups.iter().try_for_each(|group| {
-            if let Some(alone) = group.alone() {
-                let Node { solver, dt, .. } = &mut nodes[alone];
-                return solver.advance(*dt, steps * group.steps);
+        (0..self.groups.len()).try_for_each(|group| {
+            let count = steps * self.groups[group].steps;
+            match self.groups[group].alone() {
+                Some(alone) => self.nodes[alone].take(count),
+                None => self.long_steps(group, count),
             }
-            (0..steps * group.steps).try_for_each(|_| long_step(group, nodes, edges))
         })
+    }
+
+    fn long_steps(&mut self, group: usize, count: u64) -> Result<(), StepError> {
+        self.groups[group].members.iter().for_each(|&k| self.nodes[k].solver.publish());
+        (0..count).try_for_each(|_| self.long_step(group))
+    }
+
+    /// One long step of coupled solvers: the slow ones, then those that follow them.
+    fn long_step(&mut self, group: usize) -> Result<(), StepError> {
+        for at in 0..self.groups[group].slow.len() {
+            self.feed(self.groups[group].slow[at], 0)?;
+        }
+        for at in 0..self.groups[group].slow.len() {
+            self.nodes[self.groups[group].slow[at]].take_and_publish(1)?;
+        }
+        for at in 0..self.groups[group].partners.len() {
+            self.follow(self.groups[group].partners[at])?;
+        }
+        Ok(())
+    }
+
+    /// Takes the steps of a fast solver within the longer one that has just been taken, and within each of them those of
+    /// the solvers that are fast to it.
+    fn follow(&mut self, fast: usize) -> Result<(), StepError> {
+        let count = self.nodes[fast].substeps;
+        if !self.nodes[fast].one_by_one {
+            self.feed(fast, 0)?;
+            return self.nodes[fast].take_and_publish(count);
+        }
+        for step in 0..count {
+            self.feed(fast, step)?;
+            self.nodes[fast].take_and_publish(1)?;
+            for at in 0..self.nodes[fast].partners.len() {
+                self.follow(self.nodes[fast].partners[at])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Builds the inputs of a solver anew, before its step of this number.
+    fn feed(&mut self, node: usize, step: u64) -> Result<(), StepError> {
+        let Self { nodes, edges, .. } = self;
+        let count = nodes[node].substeps;
+        nodes[node].solver.clear_inputs();
+        let ending_on = |end: usize| move |edge: &&mut Box<dyn Edge>| edge.ends()[end] == node;
+        edges.iter_mut().filter(ending_on(0)).try_for_each(|edge| edge.forward(nodes))?;
+        edges.iter_mut().filter(ending_on(1)).try_for_each(|edge| edge.backward(nodes))?;
+        let mut within = edges.iter_mut().filter(ending_on(1)).filter(|edge| edge.acts_within());
+        within.try_for_each(|edge| edge.during(step, count, nodes))
     }
 
     pub(super) fn save(&self) -> Vec<Section> {
@@ -89,23 +127,6 @@ impl Graph {
     fn section_of(&self, node: &Node) -> String {
         if self.nodes.len() == 1 { "solver".to_owned() } else { format!("solver {}", node.name) }
     }
-}
-
-/// One long step of coupled solvers.
-fn long_step(group: &Group, nodes: &mut [Node], edges: &mut [Box<dyn Edge>]) -> Result<(), StepError> {
-    let Group { slow, fast, edges: laws, .. } = group;
-    for &k in slow.iter().chain(fast) {
-        nodes[k].solver.publish();
-    }
-    slow.iter().for_each(|&k| nodes[k].solver.clear_inputs());
-    laws.iter().try_for_each(|&law| edges[law].forward(nodes))?;
-    for &k in slow {
-        nodes[k].step()?;
-        nodes[k].solver.publish();
-    }
-    fast.iter().for_each(|&k| nodes[k].solver.clear_inputs());
-    laws.iter().try_for_each(|&law| edges[law].backward(nodes))?;
-    fast.iter().try_for_each(|&k| nodes[k].step())
 }
 
 fn section_of_edge(number: usize, law: &str) -> String {

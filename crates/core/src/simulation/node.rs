@@ -35,29 +35,24 @@ impl<S> std::fmt::Debug for NodeKey<S> {
     }
 }
 
-/// Which end of couplings a solver is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
-    Free,
-    Slow,
-    Fast,
-}
-
 /// A solver with its share of a longer step.
 pub(super) struct Node {
     pub(super) name: String,
     pub(super) solver: Box<dyn Solver>,
-    pub(super) end: End,
     /// Longest step chosen for it \[s\].
     pub(super) chosen: Option<f64>,
     /// Steps within the longer one, and how long each is \[s\].
     pub(super) substeps: u64,
     pub(super) dt: f64,
+    /// The solvers that take their steps within each of its own.
+    pub(super) partners: Vec<usize>,
+    /// Whether something happens within the longer step, so that it takes its steps one at a time.
+    pub(super) one_by_one: bool,
 }
 
 impl Node {
     pub(super) fn new(name: String, solver: Box<dyn Solver>) -> Self {
-        Self { name, solver, end: End::Free, chosen: None, substeps: 1, dt: 0.0 }
+        Self { name, solver, chosen: None, substeps: 1, dt: 0.0, partners: Vec::new(), one_by_one: false }
     }
 
     /// The solver behind the node; its type was known when the key was made.
@@ -71,8 +66,15 @@ impl Node {
         any.downcast_mut().expect("a key is made with the type of its solver")
     }
 
-    pub(super) fn step(&mut self) -> Result<(), StepError> {
-        self.solver.advance(self.dt, self.substeps)
+    pub(super) fn take(&mut self, steps: u64) -> Result<(), StepError> {
+        self.solver.advance(self.dt, steps)
+    }
+
+    /// Takes steps whose outcome couplings look at.
+    pub(super) fn take_and_publish(&mut self, steps: u64) -> Result<(), StepError> {
+        self.take(steps)?;
+        self.solver.publish();
+        Ok(())
     }
 
     /// Longest step \[s\] that it takes when nothing else shortens it: the one chosen for it, or the one that its limits

@@ -1,50 +1,11 @@
-//! How solvers share a step: groups of coupled solvers, and the steps of each.
+//! How solvers share a step: how many each takes within a longer one.
 
 use super::graph::Graph;
-use super::node::{End, FIT, exactly};
+use super::node::{FIT, exactly};
+use super::order::Group;
 use crate::solver::{Limits, StepError, StepLimit, StepRule};
 
-/// Solvers that couplings join, directly or through others; a free solver is a group of its own. Groups do not see each
-/// other, so each has its own long step.
-pub(super) struct Group {
-    /// Those that take the long step whole: slow ends, or the free solver.
-    pub(super) slow: Vec<usize>,
-    /// Those that take several steps within it.
-    pub(super) fast: Vec<usize>,
-    /// The laws between them.
-    pub(super) edges: Vec<usize>,
-    /// Long steps within one of the simulation.
-    pub(super) steps: u64,
-}
-
-impl Group {
-    /// The free solver, if it is one.
-    pub(super) fn alone(&self) -> Option<usize> {
-        self.edges.is_empty().then(|| self.slow[0])
-    }
-}
-
 impl Graph {
-    /// Finds the groups, in the order of their first solvers.
-    pub(super) fn regroup(&mut self) {
-        let mut first: Vec<usize> = (0..self.nodes.len()).collect();
-        for edge in &self.edges {
-            let [a, b] = edge.places().map(|place| first[place]);
-            first.iter_mut().filter(|group| **group == a.max(b)).for_each(|group| *group = a.min(b));
-        }
-        let members = |group: usize, is_fast: bool| {
-            let those = |&k: &usize| first[k] == group && (self.nodes[k].end == End::Fast) == is_fast;
-            (0..self.nodes.len()).filter(those).collect()
-        };
-        let of = |group: usize| Group {
-            slow: members(group, false),
-            fast: members(group, true),
-            edges: (0..self.edges.len()).filter(|&law| first[self.edges[law].places()[0]] == group).collect(),
-            steps: 1,
-        };
-        self.groups = (0..self.nodes.len()).filter(|&k| first[k] == k).map(of).collect();
-    }
-
     /// Divides a step \[s\] of the simulation among its solvers. One alone takes it whole, and so do the slow solvers of a
     /// single group; of several groups each has its own long step, a whole part of that step.
     pub(super) fn share(&mut self, step: f64) -> Result<(), StepError> {
@@ -52,7 +13,10 @@ impl Graph {
             self.nodes[0].dt = step;
             return Ok(());
         }
-        (0..self.groups.len()).try_for_each(|group| self.share_in_group(group, step))
+        (0..self.groups.len()).try_for_each(|group| self.share_in_group(group, step))?;
+        let Self { nodes, edges, .. } = self;
+        edges.iter_mut().for_each(|edge| edge.begin(nodes[edge.ends()[0]].dt));
+        Ok(())
     }
 
     fn share_in_group(&mut self, group: usize, step: f64) -> Result<(), StepError> {
@@ -66,21 +30,24 @@ impl Graph {
         for k in self.groups[group].slow.clone() {
             (self.nodes[k].substeps, self.nodes[k].dt) = (1, self.nodes[k].whole(long, &self.limits_of(k))?);
         }
-        for k in self.groups[group].fast.clone() {
-            (self.nodes[k].substeps, self.nodes[k].dt) = self.nodes[k].divide(long, &self.limits_of(k))?;
-        }
-        for &law in &self.groups[group].edges {
-            self.edges[law].begin(long);
-        }
         self.groups[group].steps = long_steps;
-        Ok(())
+        let partners = self.groups[group].partners.clone();
+        partners.into_iter().try_for_each(|fast| self.share_with(fast, long))
+    }
+
+    /// Divides a longer step \[s\] for a fast solver, and its own steps for those that are fast to it.
+    fn share_with(&mut self, fast: usize, long: f64) -> Result<(), StepError> {
+        let (substeps, dt) = self.nodes[fast].divide(long, &self.limits_of(fast))?;
+        (self.nodes[fast].substeps, self.nodes[fast].dt) = (substeps, dt);
+        let partners = self.nodes[fast].partners.clone();
+        partners.into_iter().try_for_each(|partner| self.share_with(partner, dt))
     }
 
     /// Limits of a solver and of the laws whose slow end it is.
     fn limits_of(&self, k: usize) -> Limits {
         let mut limits = Limits::default();
         self.nodes[k].solver.limits(&mut limits);
-        for edge in self.edges.iter().filter(|edge| edge.places()[0] == k) {
+        for edge in self.edges.iter().filter(|edge| edge.ends()[0] == k) {
             edge.limits(&self.nodes, &mut limits);
         }
         limits

@@ -1,6 +1,8 @@
 //! How coupled solvers share a step: a tank that leaks into a bucket.
 
+mod chain;
 mod free;
+mod stations;
 mod vessel;
 
 use super::*;
@@ -66,10 +68,12 @@ fn steps_that_do_not_fit_are_refused_with_both_named() {
 }
 
 #[test]
-fn a_solver_is_slow_to_all_or_fast_to_all() {
+fn what_is_refused_leaves_all_as_it_was() {
     let (mut simulation, tank, bucket) = pair(None, FAST);
     let error = simulation.couple(bucket, tank, Pipe::default()).unwrap_err();
-    assert_eq!(error.place, "bucket");
+    assert!(error.reason.contains("ring `tank` - `bucket` - `tank`"), "{error}");
+    let error = simulation.couple(tank, tank, Pipe::default()).unwrap_err();
+    assert_eq!(error.reason, "both ends are one solver");
     let full = simulation.add("full", Vessel::new(200.0, None)).unwrap();
     let error = simulation.couple(tank, full, Pipe::default()).unwrap_err();
     assert_eq!(error.reason, "the vessel is full");

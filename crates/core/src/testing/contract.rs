@@ -284,7 +284,7 @@ pub(super) fn same(a: &Section, b: &Section, promise: &'static str, found: &str)
     Err(Breach::new(promise, format!("{found} {place}")))
 }
 
-pub(super) fn in_pool<T: Send>(threads: usize, body: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn in_pool<T: Send>(threads: usize, body: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("a pool of a few threads can be built").install(body)
 }
