@@ -170,6 +170,7 @@ impl Simulation {
     }
 
     /// Sets the longest step \[s\] of a solver that takes several within that of the simulation; from the next segment on.
+    /// It takes shorter ones where a limit that must not be exceeded asks for them.
     pub fn choose_step<S: Solver>(&mut self, key: NodeKey<S>, dt: f64) {
         self.graph.nodes[key.index].chosen = Some(dt);
     }
