@@ -39,10 +39,7 @@ pub(crate) fn shown(solver: &dyn Solver) -> Vec<Shown> {
         let fits = |name: &str| name != RADIAL_FRONT || any.is::<Dem<D3>>();
         let new = |name: &str| fits(name) && !list.iter().any(|known| known.name == name);
         let more = PROBES.iter().filter(|(name, ..)| new(name));
-        let number = |&(name, unit, meaning): &(&str, _, _)| {
-            let (name, kind) = (name.to_owned(), ShownAs::Number);
-            Shown { name, unit, meaning, kind }
-        };
+        let number = |&(name, unit, meaning): &(&str, _, _)| Shown::new(name, unit, meaning, ShownAs::Number);
         let more: Vec<Shown> = more.map(number).collect();
         list.extend(more);
     }

@@ -5,7 +5,7 @@ mod toy;
 
 use super::{Breach, Contract, CountingAllocator, loads_follow_their_grains};
 use crate::quantity::{HydroLoad, Load};
-use crate::{Accepts, D2, Solver};
+use crate::{Accepts, D2, Location, Solver};
 use glam::DVec2;
 use sorter::{Flaw, Sorter};
 use toy::{Fault, Toy};
@@ -62,6 +62,10 @@ fn every_fault_is_caught_by_the_test_of_its_promise_and_no_other() {
         (Fault::ShowsTooFew, 8),
         (Fault::SameNameTwice, 8),
         (Fault::LinksToNowhere, 8),
+        (Fault::PlacesInAnotherOrder, 8),
+        (Fault::SamePlaceTwice, 8),
+        (Fault::UnknownPlace, 8),
+        (Fault::AtAnotherPlace, 8),
     ];
     for (fault, test) in expected {
         assert_eq!(caught(fault), [test], "{fault:?}");
@@ -76,6 +80,18 @@ fn a_solver_that_stands_still_or_fails_is_no_evidence() {
     for test in TESTS {
         assert!(test(&failing).unwrap_err().found.contains("a step failed"));
     }
+}
+
+#[test]
+fn a_place_has_the_fields_that_live_there_and_all_numbers() {
+    let toy = Toy::new(None);
+    let names = |place: &str| toy.shown_at(place).into_iter().map(|shown| shown.name).collect::<Vec<_>>();
+    assert_eq!(names("oscillators"), ["energy", "velocity", "stretch"]);
+    assert_eq!(names(""), names("oscillators"));
+    assert_eq!(names("cells"), ["energy", "height"]);
+    assert!(matches!(toy.location(), Location::Points(points) if points.len() == toy.size().0));
+    assert!(matches!(toy.place("cells"), Some(Location::Grid { cells: [2, 3, 1], .. })));
+    assert!(toy.place("nodes").is_none());
 }
 
 #[test]

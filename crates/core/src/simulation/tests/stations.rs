@@ -66,8 +66,8 @@ impl Solver for Station {
         self.log.add(format!("{} clears", self.name));
         self.input = 0.0;
     }
-    fn location(&self) -> Location<'_> {
-        Location::Points(FieldRef::Vector2(&[]))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        vec![("station", Location::Points(FieldRef::Vector2(&[])))]
     }
     fn shown(&self) -> Vec<Shown> {
         Vec::new()

@@ -65,8 +65,8 @@ impl Solver for Vessel {
     fn clear_inputs(&mut self) {
         self.input = 0.0;
     }
-    fn location(&self) -> Location<'_> {
-        Location::Points(crate::field::FieldRef::Vector2(&[]))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        vec![("vessel", Location::Points(crate::field::FieldRef::Vector2(&[])))]
     }
     fn shown(&self) -> Vec<Shown> {
         Vec::new()

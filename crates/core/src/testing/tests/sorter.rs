@@ -92,8 +92,8 @@ impl Solver for Sorter {
             self.load.fill(Load::ZERO);
         }
     }
-    fn location(&self) -> Location<'_> {
-        Location::Points(FieldRef::Vector2(&self.position))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        vec![("grains", Location::Points(FieldRef::Vector2(&self.position)))]
     }
     fn shown(&self) -> Vec<Shown> {
         Vec::new()
