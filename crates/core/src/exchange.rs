@@ -13,6 +13,7 @@
 //! needs_grains(&Fluid); // `Fluid` does not provide `GrainMotion<D2>`
 //! ```
 
+use crate::field::{FieldSink, Shown};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, StepError};
 use std::fmt;
@@ -104,6 +105,14 @@ pub trait Coupling<Slow, Fast>: Send + 'static {
     /// Limits that the law sets on the long step.
     fn limits(&self, slow: &Slow, fast: &Fast, report: &mut Limits) {
         let _ = (slow, fast, report);
+    }
+    /// Everything that [`Coupling::show`] can show. Fields have one value per item of a place of the fast solver.
+    fn shown(&self) -> Vec<Shown> {
+        Vec::new()
+    }
+    /// Shows fields and numbers, such as what was exchanged or the work done; computes only what the sink wants.
+    fn show(&self, slow: &Slow, fast: &Fast, sink: &mut dyn FieldSink) {
+        let _ = (slow, fast, sink);
     }
     /// Adds the state of the law to a section.
     fn save(&self, to: &mut Section) {

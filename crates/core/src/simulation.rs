@@ -10,6 +10,7 @@ mod sharing;
 mod tests;
 
 pub use clock::Clock;
+pub use edge::CouplingView;
 pub use node::NodeKey;
 
 use crate::blocks::inside_pool;
@@ -167,6 +168,12 @@ impl Simulation {
     /// Names of all solvers with what they are.
     pub fn solvers(&self) -> impl Iterator<Item = (&str, &dyn Solver)> {
         self.graph.nodes.iter().map(|node| (node.name.as_str(), node.solver.as_ref()))
+    }
+
+    /// All couplings, in the order in which they were made; each shows numbers and fields as solvers do.
+    pub fn couplings(&self) -> impl Iterator<Item = CouplingView<'_>> {
+        let nodes = &self.graph.nodes[..];
+        self.graph.edges.iter().map(move |edge| CouplingView { edge: edge.as_ref(), nodes })
     }
 
     /// Sets the longest step \[s\] of a solver that takes several within that of the simulation; from the next segment on.

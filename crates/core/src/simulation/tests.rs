@@ -6,6 +6,7 @@ mod stations;
 mod vessel;
 
 use super::*;
+use crate::field::{FieldRef, FieldSink, Numbers};
 use crate::solver::StepRule;
 use vessel::{Pipe, Vessel};
 
@@ -120,4 +121,43 @@ fn a_restart_takes_up_solvers_and_couplings() {
     assert_eq!(names, ["clock", "solver tank", "solver bucket", "coupling 0 pipe"]);
     let missing = second.restore(&saved[..3]).unwrap_err().to_string();
     assert!(missing.contains("coupling 0 pipe"), "{missing}");
+}
+
+#[test]
+fn couplings_show_numbers_and_fields_as_solvers_do() {
+    struct Fields(Vec<(String, f64)>);
+    impl FieldSink for Fields {
+        fn wants(&self, name: &str) -> bool {
+            name == "difference"
+        }
+        fn field(&mut self, name: &str, _: &str, values: FieldRef<'_>) {
+            let FieldRef::Scalar([value]) = values else { panic!("one vessel, one value: {values:?}") };
+            self.0.push((name.to_owned(), *value));
+        }
+        fn number(&mut self, name: &str, _: &str, _: f64) {
+            panic!("`{name}` was not wanted");
+        }
+    }
+    let (mut simulation, tank, bucket) = pair(Some((0.1, StepRule::AtMost)), FAST);
+    simulation.begin_segment(0.1).unwrap();
+    simulation.advance(3).unwrap();
+    let view = simulation.couplings().next().expect("there is one");
+    assert_eq!((view.name(), view.slow(), view.fast()), ("pipe", "tank", "bucket"));
+    let names: Vec<String> = view.shown().into_iter().map(|shown| shown.name).collect();
+    assert_eq!(names, ["moved", "difference"]);
+    let mut numbers = Numbers::wanting(["moved"]);
+    view.show(&mut numbers);
+    let section = &simulation.save()[3];
+    assert_eq!(numbers.get("moved"), Some(section.one::<f64>("moved").unwrap()));
+    let mut fields = Fields(Vec::new());
+    view.show(&mut fields);
+    let difference = simulation.get(bucket).level - simulation.get(tank).level;
+    assert_eq!(fields.0, [("difference".to_owned(), difference)]);
+    // A law that shows nothing needs to say nothing.
+    let log = stations::Log::default();
+    let mut simulation = Simulation::named("a", Box::new(stations::Station::new("a", 1.0, &log)));
+    let (a, b) =
+        (simulation.find("a").unwrap(), simulation.add("b", stations::Station::new("b", 1.0, &log)).unwrap());
+    simulation.couple(a, b, stations::Line::new("line", &log)).unwrap();
+    assert!(simulation.couplings().all(|view| view.shown().is_empty()));
 }

@@ -1,7 +1,7 @@
 //! Toys: a tank that leaks into a bucket.
 
 use crate::exchange::{Accepts, Coupling, CouplingError, Provides, Quantity};
-use crate::field::{FieldSink, Location, Shown};
+use crate::field::{FieldRef, FieldSink, Location, Shown, ShownAs};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, Memory, Solver, StepError, StepLimit, StepRule};
 
@@ -111,6 +111,25 @@ impl<A: Accepts<Level> + Provides<Level>, B: Accepts<Level> + Provides<Level>> C
     fn limits(&self, _: &A, _: &B, report: &mut Limits) {
         let why = "of the pipe".to_owned();
         report.steps.push(StepLimit { name: "pipe", dt: 0.5, rule: StepRule::AtMost, why });
+    }
+    fn shown(&self) -> Vec<Shown> {
+        vec![
+            Shown::new("moved", "m", "sum of what went forward", ShownAs::Number),
+            Shown::new(
+                "difference",
+                "m",
+                "level of the fast vessel over that of the slow one",
+                ShownAs::Field,
+            ),
+        ]
+    }
+    fn show(&self, slow: &A, fast: &B, sink: &mut dyn FieldSink) {
+        if sink.wants("moved") {
+            sink.number("moved", "m", self.moved);
+        }
+        if sink.wants("difference") {
+            sink.field("difference", "m", FieldRef::Scalar(&[fast.view() - slow.view()]));
+        }
     }
     fn save(&self, to: &mut Section) {
         to.put_one("moved", self.moved);
