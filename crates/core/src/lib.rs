@@ -42,7 +42,7 @@ pub use field::{FieldRef, FieldSink, Location, Numbers, Shown, ShownAs};
 pub use glam;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
 pub use quantity::{GrainMotion, Grains, HydroLoad, Load, LoadsMut, Motion, ObstacleMotion};
-pub use simulation::{Clock, Ending, CouplingView, NodeKey, RunError, Simulation};
+pub use simulation::{Clock, CouplingView, Ending, NodeKey, RunError, Simulation};
 pub use snapshot::{Section, SnapshotError, Stored};
 pub use solver::{Bound, Limits, Memory, Solver, StepError, StepLimit, StepRule};
 pub use tensor::SymmetricTensor;

@@ -1,10 +1,12 @@
 //! Solvers with a clock, and the loop that runs them between outputs.
 
 mod clock;
+mod decision;
 mod edge;
 mod graph;
 mod node;
 mod order;
+mod run;
 mod sharing;
 #[cfg(test)]
 mod tests;
@@ -12,60 +14,14 @@ mod tests;
 pub use clock::Clock;
 pub use edge::CouplingView;
 pub use node::NodeKey;
+pub use run::{Ending, RunError};
 
 use crate::blocks::inside_pool;
 use crate::exchange::{Coupling, CouplingError};
-use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, Solver, StepError, check_step};
 use graph::Graph;
 use std::fmt;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
-/// How a segment ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
-    /// Its duration is over.
-    Finished,
-    /// An observer asked to stop.
-    Stopped,
-    /// The interrupt flag was raised.
-    Interrupted,
-}
-
-/// Why a segment failed.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum RunError {
-    /// The solver could not go on.
-    Step(StepError),
-    /// An observer failed.
-    Observer(ObserverError),
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step(error) => error.fmt(f),
-            Self::Observer(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for RunError {}
-
-impl From<StepError> for RunError {
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
-}
-
-impl From<ObserverError> for RunError {
-    fn from(error: ObserverError) -> Self {
-        Self::Observer(error)
-    }
-}
 
 /// Solvers with a clock, and the couplings between them.
 ///
@@ -84,9 +40,6 @@ impl fmt::Debug for Simulation {
         f.debug_struct("Simulation").field("solvers", &names).field("clock", &self.clock).finish()
     }
 }
-
-/// Wall time between looks at the interrupt flag and at wall-clock schedules.
-const ATTENTION: Duration = Duration::from_millis(50);
 
 impl Simulation {
     /// A simulation of one solver at time zero.
@@ -195,53 +148,23 @@ impl Simulation {
         check_step(dt)?;
         self.graph.share(dt)?;
         self.clock = Clock { start: self.clock.time(), dt, steps_in_segment: 0, step: self.clock.step };
+        // Solvers may have been changed before.
+        self.graph.publish();
         Ok(())
-    }
-
-    /// Runs the present segment until it has lasted `duration` \[s\] (the first step at or after
-    /// it), an observer stops it, or the interrupt flag is raised. Observers look before the
-    /// first step, and then when they are due.
-    ///
-    /// # Errors
-    /// When the solver or an observer fails.
-    pub fn run(
-        &mut self,
-        duration: f64,
-        observers: &mut [Scheduled],
-        interrupt: &AtomicBool,
-    ) -> Result<Ending, RunError> {
-        check_step(self.clock.dt)?;
-        let last = (duration / self.clock.dt * (1.0 - 1e-12)).ceil() as u64;
-        let mut burst = 1_u64;
-        loop {
-            let mut flow = Flow::Continue;
-            for observer in observers.iter_mut() {
-                if observer.tick(self)? == Flow::Stop {
-                    flow = Flow::Stop;
-                }
-            }
-            if flow == Flow::Stop {
-                return Ok(Ending::Stopped);
-            }
-            if self.clock.steps_in_segment >= last {
-                return Ok(Ending::Finished);
-            }
-            if interrupt.load(Ordering::Relaxed) {
-                return Ok(Ending::Interrupted);
-            }
-            let due = observers.iter().map(|o| o.steps_until_due(self)).min().unwrap_or(u64::MAX);
-            let steps = due.min(last - self.clock.steps_in_segment).min(burst);
-            let begun = Instant::now();
-            self.advance(steps)?;
-            burst = next_burst(burst, steps, begun.elapsed());
-        }
     }
 
     /// Takes `steps` steps of the present segment without observers.
     ///
     /// # Errors
-    /// When the solver fails.
+    /// When a solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        let outcome = self.take(steps);
+        self.graph.publish();
+        outcome
+    }
+
+    /// Takes steps that nobody outside of the simulation has a look at yet.
+    fn take(&mut self, steps: u64) -> Result<(), StepError> {
         // Solvers alone know better whether they have work for more threads than one.
         if self.graph.edges.is_empty() {
             self.graph.advance(steps)?;
@@ -270,6 +193,7 @@ impl Simulation {
         let times: Vec<f64> = clock.array_of("start and dt", 2)?;
         let steps: Vec<u64> = clock.array_of("steps in segment and run", 2)?;
         self.graph.restore(sections)?;
+        self.graph.publish();
         self.clock = Clock { start: times[0], dt: times[1], steps_in_segment: steps[0], step: steps[1] };
         if check_step(self.clock.dt).is_ok() {
             let shared = self.graph.share(self.clock.dt);
@@ -289,15 +213,4 @@ impl Simulation {
 pub fn find_section<'a>(sections: &'a [Section], name: &str) -> Result<&'a Section, SnapshotError> {
     let found = sections.iter().find(|section| section.name() == name);
     found.ok_or_else(|| SnapshotError::Missing { place: name.to_owned() })
-}
-
-/// Lets bursts of steps grow while they are short against [`ATTENTION`].
-fn next_burst(burst: u64, taken: u64, wall: Duration) -> u64 {
-    if wall > ATTENTION {
-        (burst / 2).max(1)
-    } else if taken == burst && wall < ATTENTION / 2 {
-        burst.saturating_mul(2)
-    } else {
-        burst
-    }
 }

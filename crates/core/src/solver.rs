@@ -29,7 +29,9 @@ pub trait Solver: Any + Send {
     fn step(&mut self, dt: f64) -> Result<(), StepError> {
         self.advance(dt, 1)
     }
-    /// Brings what the solver lends to others up to date on the host; nothing to do on a CPU.
+    /// Brings what the solver lends, shows and saves up to date on the host; nothing to do on a CPU. A simulation calls it
+    /// before laws see the solver, before observers look that are due, and at the end of each of its own calls, after which
+    /// it may be saved: not after each step. A solver that nothing has changed since has nothing to do.
     fn publish(&mut self) {}
     /// Zeroes what couplings add to; only the simulation calls this.
     fn clear_inputs(&mut self) {}

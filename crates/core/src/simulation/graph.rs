@@ -49,6 +49,11 @@ impl Graph {
         })
     }
 
+    /// Brings what solvers lend and show up to date.
+    pub(super) fn publish(&mut self) {
+        self.nodes.iter_mut().for_each(|node| node.solver.publish());
+    }
+
     fn long_steps(&mut self, group: usize, count: u64) -> Result<(), StepError> {
         self.groups[group].members.iter().for_each(|&k| self.nodes[k].solver.publish());
         (0..count).try_for_each(|_| self.long_step(group))

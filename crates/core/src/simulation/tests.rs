@@ -1,13 +1,16 @@
 //! How coupled solvers share a step: a tank that leaks into a bucket.
 
 mod chain;
+mod device;
 mod free;
 mod stations;
 mod vessel;
 
 use super::*;
 use crate::field::{FieldRef, FieldSink, Numbers};
+use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::solver::StepRule;
+use std::sync::atomic::AtomicBool;
 use vessel::{Pipe, Vessel};
 
 const FAST: Option<(f64, StepRule)> = Some((0.03, StepRule::AtMost));

@@ -83,7 +83,9 @@ impl Contract {
 
     /// Takes steps that must succeed.
     pub(super) fn go(&self, solver: &mut dyn Solver, steps: u64, why: &'static str) -> Result<(), Breach> {
-        solver.advance(self.dt, steps).map_err(|error| Breach::new(why, format!("a step failed: {error}")))
+        let outcome = solver.advance(self.dt, steps);
+        solver.publish();
+        outcome.map_err(|error| Breach::new(why, format!("a step failed: {error}")))
     }
 
     /// Runs in pools of 1, 2, 3 and 8 threads give the same state. The state must change, or the
