@@ -13,6 +13,7 @@
 //! needs_grains(&Fluid); // `Fluid` does not provide `GrainMotion<D2>`
 //! ```
 
+use crate::field::{FieldSink, Shown};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, StepError};
 use std::fmt;
@@ -37,20 +38,33 @@ pub trait Provides<Q: Quantity> {
 }
 
 /// A solver that takes a quantity. What it takes is an input: it only reads it.
+///
+/// Inputs follow the solver: when it re-sorts, adds, removes or exchanges the items that an input belongs to while the input
+/// is held, it moves the input along.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not accept `{Q}`")]
 pub trait Accepts<Q: Quantity> {
-    /// Where to put the quantity.
+    /// Makes room for the quantity, as zeros. A law that writes it calls this in [`Coupling::attach`]; a solver that nobody
+    /// writes to holds nothing and does no work for it. More than one law may call it.
+    fn enable(&mut self) {}
+    /// Where to put the quantity, once [`Accepts::enable`] has been called.
     fn view_mut(&mut self) -> Q::ViewMut<'_>;
 }
 
-/// A law between a solver with long steps and one with short steps, which takes several within one of the other.
+/// A law between a slow solver, which takes long steps, and a fast one, which takes several within each of them.
 ///
-/// In each long step: all laws go forward, the slow solvers step, all laws go backward, the fast solvers step.
-/// A law owns its scratch and its saved state; laws add to inputs, so that two may feed one solver.
+/// In each long step the laws go forward, the slow solver steps, the laws go backward, and the fast solver steps. A solver
+/// may be slow to one and fast to another: each of its steps is then a long step for the solvers that are fast to it.
+///
+/// Inputs are built anew for each call of [`Solver::advance`](crate::Solver::advance): they are cleared, and then every law
+/// that ends on the solver adds to them, so that several laws may feed one solver. For a fast solver that takes its steps one
+/// at a time, since something happens within them, `backward` is therefore called before each of them, with the slow solver
+/// unchanged: it adds the same again. What counts once per long step is booked in `forward`.
+///
+/// A law owns its scratch and its saved state.
 pub trait Coupling<Slow, Fast>: Send + 'static {
     /// What the law is called.
     fn name(&self) -> &'static str;
-    /// Called once: switches on what the law needs, checks sizes.
+    /// Called once: switches on what the law writes ([`Accepts::enable`]), checks sizes.
     ///
     /// # Errors
     /// When the solvers do not fit one another.
@@ -64,7 +78,7 @@ pub trait Coupling<Slow, Fast>: Send + 'static {
     /// # Errors
     /// When the state of the fast solver makes no sense to the slow one.
     fn forward(&mut self, fast: &Fast, slow: &mut Slow) -> Result<(), StepError>;
-    /// After the slow step. Loads are means over it, held until replaced.
+    /// After the slow step, before steps of the fast solver. Loads are means over the slow step.
     ///
     /// # Errors
     /// When the state of the slow solver makes no sense to the fast one.
@@ -72,9 +86,33 @@ pub trait Coupling<Slow, Fast>: Send + 'static {
         let _ = (slow, fast);
         Ok(())
     }
+    /// Whether the law acts within the long step: the fast solver then takes its steps one at a time, and
+    /// [`Coupling::during`] is called before each.
+    fn acts_within(&self) -> bool {
+        false
+    }
+    /// Before step `k` of the `n` steps that the fast solver takes within one of the slow solver, from 0 to n - 1, after
+    /// `backward`: for loads that follow the fast solver, and for means over its steps, which a law sums up here. What it
+    /// adds to inputs holds for this one step. (With several slow solvers, `n` counts within the step of the one that has the
+    /// shortest.)
+    ///
+    /// # Errors
+    /// When the state of the solvers makes no sense to the law.
+    fn during(&mut self, k: u64, n: u64, slow: &Slow, fast: &mut Fast) -> Result<(), StepError> {
+        let _ = (k, n, slow, fast);
+        Ok(())
+    }
     /// Limits that the law sets on the long step.
     fn limits(&self, slow: &Slow, fast: &Fast, report: &mut Limits) {
         let _ = (slow, fast, report);
+    }
+    /// Everything that [`Coupling::show`] can show. Fields have one value per item of a place of the fast solver.
+    fn shown(&self) -> Vec<Shown> {
+        Vec::new()
+    }
+    /// Shows fields and numbers, such as what was exchanged or the work done; computes only what the sink wants.
+    fn show(&self, slow: &Slow, fast: &Fast, sink: &mut dyn FieldSink) {
+        let _ = (slow, fast, sink);
     }
     /// Adds the state of the law to a section.
     fn save(&self, to: &mut Section) {

@@ -1,4 +1,4 @@
-//! What a solver shows to the outside: fields, links and numbers, and where they live.
+//! What a solver or a law shows to the outside: fields, links and numbers, and where they live.
 
 use crate::tensor::SymmetricTensor;
 use glam::{DVec2, DVec3};
@@ -39,7 +39,7 @@ impl FieldRef<'_> {
     }
 }
 
-/// Where the fields of a solver live.
+/// Where fields of a solver live.
 #[derive(Clone, Copy, Debug)]
 pub enum Location<'a> {
     /// At points, one per grain or particle \[m\].
@@ -59,11 +59,11 @@ pub enum Location<'a> {
 pub trait FieldSink {
     /// Whether this field, link field or number should be shown.
     fn wants(&self, name: &str) -> bool;
-    /// One value per point or cell.
+    /// One value per point or cell of the place where the field lives.
     fn field(&mut self, name: &str, unit: &str, values: FieldRef<'_>);
     /// One number.
     fn number(&mut self, name: &str, unit: &str, value: f64);
-    /// The pairs of points that the following link fields belong to (contacts).
+    /// The pairs of points, all of one place, that the following link fields belong to (contacts).
     fn links(&mut self, pairs: &[[u32; 2]]) {
         let _ = pairs;
     }
@@ -75,6 +75,7 @@ pub trait FieldSink {
 
 /// What a solver can show, for help texts and error messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Shown {
     /// Name that a sink asks for.
     pub name: String,
@@ -84,6 +85,21 @@ pub struct Shown {
     pub meaning: &'static str,
     /// One number, one value per item, or one per link.
     pub kind: ShownAs,
+    /// Name of the place where a field or the points of links live; empty for the first place. See
+    /// [`Solver::places`](crate::Solver::places).
+    pub place: &'static str,
+}
+
+impl Shown {
+    /// At the first place of a solver.
+    pub fn new(name: impl Into<String>, unit: &'static str, meaning: &'static str, kind: ShownAs) -> Self {
+        Self { name: name.into(), unit, meaning, kind, place: "" }
+    }
+
+    /// At the place of this name.
+    pub fn at(self, place: &'static str) -> Self {
+        Self { place, ..self }
+    }
 }
 
 /// The shape of what is shown.

@@ -42,8 +42,9 @@ impl fmt::Display for ObserverError {
 
 impl std::error::Error for ObserverError {}
 
-/// Looks at a simulation on a schedule. Observers cannot change the physics, and their order
-/// does not matter.
+/// Looks at a simulation on a schedule, after all solvers were told to
+/// [`publish`](crate::Solver::publish). Observers cannot change the physics, and their order does
+/// not matter.
 pub trait Observer: Send {
     /// Looks.
     ///
@@ -114,24 +115,23 @@ impl Scheduled {
         }
     }
 
-    /// Looks if it is due.
-    pub(crate) fn tick(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+    /// The count of the next look if one is due now.
+    pub(crate) fn due(&self, simulation: &Simulation) -> Option<u64> {
         let clock = simulation.clock();
         let due = match self.every {
             Every::Steps(n) => clock.step() / n.max(1) + 1,
             Every::Time(interval) => count_of_multiples(clock.time(), interval),
-            Every::Wall(interval) => {
-                if self.last_wall.elapsed() < interval {
-                    return Ok(Flow::Continue);
-                }
-                self.last_wall = Instant::now();
-                self.next + 1
-            }
+            Every::Wall(interval) => self.next + u64::from(self.last_wall.elapsed() >= interval),
         };
-        if due <= self.next {
-            return Ok(Flow::Continue);
+        (due > self.next).then_some(due)
+    }
+
+    /// Looks, after which it is due again at the look of this count.
+    pub(crate) fn look(&mut self, next: u64, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        if let Every::Wall(_) = self.every {
+            self.last_wall = Instant::now();
         }
-        self.next = due;
+        self.next = next;
         self.observer.observe(simulation)
     }
 

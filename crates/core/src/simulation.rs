@@ -1,101 +1,34 @@
 //! Solvers with a clock, and the loop that runs them between outputs.
 
-mod nodes;
+mod clock;
+mod decision;
+mod edge;
+mod graph;
+mod node;
+mod order;
+mod run;
+mod sharing;
 #[cfg(test)]
 mod tests;
 
-pub use nodes::NodeKey;
+pub use clock::Clock;
+pub use edge::CouplingView;
+pub use node::NodeKey;
+pub use run::{Ending, RunError};
 
 use crate::blocks::inside_pool;
 use crate::exchange::{Coupling, CouplingError};
-use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::snapshot::{Section, SnapshotError};
 use crate::solver::{Limits, Solver, StepError, check_step};
-use nodes::{Graph, Node};
+use graph::Graph;
 use std::fmt;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
-/// Simulated time. Inside a segment it is `start + k * dt`, not a running sum.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
-    start: f64,
-    dt: f64,
-    steps_in_segment: u64,
-    step: u64,
-}
-
-impl Clock {
-    /// Simulated time \[s\].
-    pub fn time(&self) -> f64 {
-        self.start + self.steps_in_segment as f64 * self.dt
-    }
-
-    /// Step of the present segment \[s\]; zero before the first.
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    /// Steps taken since the start of the run.
-    pub fn step(&self) -> u64 {
-        self.step
-    }
-
-    /// Time since the start of the present segment \[s\].
-    pub fn time_in_segment(&self) -> f64 {
-        self.steps_in_segment as f64 * self.dt
-    }
-}
-
-/// How a segment ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
-    /// Its duration is over.
-    Finished,
-    /// An observer asked to stop.
-    Stopped,
-    /// The interrupt flag was raised.
-    Interrupted,
-}
-
-/// Why a segment failed.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum RunError {
-    /// The solver could not go on.
-    Step(StepError),
-    /// An observer failed.
-    Observer(ObserverError),
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step(error) => error.fmt(f),
-            Self::Observer(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for RunError {}
-
-impl From<StepError> for RunError {
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
-}
-
-impl From<ObserverError> for RunError {
-    fn from(error: ObserverError) -> Self {
-        Self::Observer(error)
-    }
-}
 
 /// Solvers with a clock, and the couplings between them.
 ///
-/// Several solvers share a long step. Those that are the slow end of a [`Coupling`] take it whole; the
-/// others take it in equal steps, as many as their own limits ask for. The first solver is the one that
-/// observers look at.
+/// Solvers that couplings join share a long step: those that are the slow end of a [`Coupling`] take it whole, the
+/// others in equal steps, as many as their own limits ask for. Solvers that nothing joins do not shorten each other's
+/// steps: the step of the simulation, after which its clock goes on and observers may look, is the longest of them, and
+/// the others take several within it. The first solver is the one that observers look at.
 pub struct Simulation {
     graph: Graph,
     clock: Clock,
@@ -108,9 +41,6 @@ impl fmt::Debug for Simulation {
     }
 }
 
-/// Wall time between looks at the interrupt flag and at wall-clock schedules.
-const ATTENTION: Duration = Duration::from_millis(50);
-
 impl Simulation {
     /// A simulation of one solver at time zero.
     pub fn new(solver: Box<dyn Solver>) -> Self {
@@ -121,7 +51,7 @@ impl Simulation {
     pub fn named(name: impl Into<String>, solver: Box<dyn Solver>) -> Self {
         let clock = Clock { start: 0.0, dt: 0.0, steps_in_segment: 0, step: 0 };
         let mut simulation = Self { graph: Graph::default(), clock };
-        simulation.graph.nodes.push(Node::new(name.into(), solver));
+        simulation.graph.add(name.into(), solver);
         simulation
     }
 
@@ -138,7 +68,7 @@ impl Simulation {
         if self.graph.nodes.iter().any(|node| node.name == name) {
             return Err(CouplingError::new(name, "a solver of this name is there already"));
         }
-        self.graph.nodes.push(Node::new(name, Box::new(solver)));
+        self.graph.add(name, Box::new(solver));
         Ok(NodeKey::new(self.graph.nodes.len() - 1))
     }
 
@@ -152,7 +82,8 @@ impl Simulation {
     /// Couples two solvers by a law.
     ///
     /// # Errors
-    /// When they do not fit, or one is the slow end of one law and the fast end of another.
+    /// When they do not fit, when couplings form a ring in which each solver is slow to the next, or when a solver is fast
+    /// to two that take steps of their own beside each other.
     pub fn couple<Slow: Solver, Fast: Solver>(
         &mut self,
         slow: NodeKey<Slow>,
@@ -179,12 +110,12 @@ impl Simulation {
 
     /// A solver by its key.
     pub fn get<S: Solver>(&self, key: NodeKey<S>) -> &S {
-        nodes::typed(&self.graph.nodes[key.index])
+        self.graph.nodes[key.index].typed()
     }
 
     /// A solver by its key, to change it between segments.
     pub fn get_mut<S: Solver>(&mut self, key: NodeKey<S>) -> &mut S {
-        nodes::typed_mut(&mut self.graph.nodes[key.index])
+        self.graph.nodes[key.index].typed_mut()
     }
 
     /// Names of all solvers with what they are.
@@ -192,12 +123,19 @@ impl Simulation {
         self.graph.nodes.iter().map(|node| (node.name.as_str(), node.solver.as_ref()))
     }
 
-    /// Sets the longest step \[s\] of a solver that takes several within the long step; from the next segment on.
+    /// All couplings, in the order in which they were made; each shows numbers and fields as solvers do.
+    pub fn couplings(&self) -> impl Iterator<Item = CouplingView<'_>> {
+        let nodes = &self.graph.nodes[..];
+        self.graph.edges.iter().map(move |edge| CouplingView { edge: edge.as_ref(), nodes })
+    }
+
+    /// Sets the longest step \[s\] of a solver that takes several within that of the simulation; from the next segment on.
+    /// It takes shorter ones where a limit that must not be exceeded asks for them.
     pub fn choose_step<S: Solver>(&mut self, key: NodeKey<S>, dt: f64) {
         self.graph.nodes[key.index].chosen = Some(dt);
     }
 
-    /// Limits on the long step, and all bounds.
+    /// Limits on the step of the simulation, and all bounds. Solvers that take several steps within it do not limit it.
     pub fn limits(&self, report: &mut Limits) {
         self.graph.limits(report);
     }
@@ -210,58 +148,28 @@ impl Simulation {
         check_step(dt)?;
         self.graph.share(dt)?;
         self.clock = Clock { start: self.clock.time(), dt, steps_in_segment: 0, step: self.clock.step };
+        // Solvers may have been changed before.
+        self.graph.publish();
         Ok(())
-    }
-
-    /// Runs the present segment until it has lasted `duration` \[s\] (the first step at or after
-    /// it), an observer stops it, or the interrupt flag is raised. Observers look before the
-    /// first step, and then when they are due.
-    ///
-    /// # Errors
-    /// When the solver or an observer fails.
-    pub fn run(
-        &mut self,
-        duration: f64,
-        observers: &mut [Scheduled],
-        interrupt: &AtomicBool,
-    ) -> Result<Ending, RunError> {
-        check_step(self.clock.dt)?;
-        let last = (duration / self.clock.dt * (1.0 - 1e-12)).ceil() as u64;
-        let mut burst = 1_u64;
-        loop {
-            let mut flow = Flow::Continue;
-            for observer in observers.iter_mut() {
-                if observer.tick(self)? == Flow::Stop {
-                    flow = Flow::Stop;
-                }
-            }
-            if flow == Flow::Stop {
-                return Ok(Ending::Stopped);
-            }
-            if self.clock.steps_in_segment >= last {
-                return Ok(Ending::Finished);
-            }
-            if interrupt.load(Ordering::Relaxed) {
-                return Ok(Ending::Interrupted);
-            }
-            let due = observers.iter().map(|o| o.steps_until_due(self)).min().unwrap_or(u64::MAX);
-            let steps = due.min(last - self.clock.steps_in_segment).min(burst);
-            let begun = Instant::now();
-            self.advance(steps)?;
-            burst = next_burst(burst, steps, begun.elapsed());
-        }
     }
 
     /// Takes `steps` steps of the present segment without observers.
     ///
     /// # Errors
-    /// When the solver fails.
+    /// When a solver fails.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        // One solver alone knows better whether it has work for more threads than one.
-        if self.graph.nodes.len() > 1 {
-            inside_pool(|| self.graph.advance(steps))?;
-        } else {
+        let outcome = self.take(steps);
+        self.graph.publish();
+        outcome
+    }
+
+    /// Takes steps that nobody outside of the simulation has a look at yet.
+    fn take(&mut self, steps: u64) -> Result<(), StepError> {
+        // Solvers alone know better whether they have work for more threads than one.
+        if self.graph.edges.is_empty() {
             self.graph.advance(steps)?;
+        } else {
+            inside_pool(|| self.graph.advance(steps))?;
         }
         self.clock.steps_in_segment += steps;
         self.clock.step += steps;
@@ -285,6 +193,7 @@ impl Simulation {
         let times: Vec<f64> = clock.array_of("start and dt", 2)?;
         let steps: Vec<u64> = clock.array_of("steps in segment and run", 2)?;
         self.graph.restore(sections)?;
+        self.graph.publish();
         self.clock = Clock { start: times[0], dt: times[1], steps_in_segment: steps[0], step: steps[1] };
         if check_step(self.clock.dt).is_ok() {
             let shared = self.graph.share(self.clock.dt);
@@ -304,15 +213,4 @@ impl Simulation {
 pub fn find_section<'a>(sections: &'a [Section], name: &str) -> Result<&'a Section, SnapshotError> {
     let found = sections.iter().find(|section| section.name() == name);
     found.ok_or_else(|| SnapshotError::Missing { place: name.to_owned() })
-}
-
-/// Lets bursts of steps grow while they are short against [`ATTENTION`].
-fn next_burst(burst: u64, taken: u64, wall: Duration) -> u64 {
-    if wall > ATTENTION {
-        (burst / 2).max(1)
-    } else if taken == burst && wall < ATTENTION / 2 {
-        burst.saturating_mul(2)
-    } else {
-        burst
-    }
 }

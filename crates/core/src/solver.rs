@@ -1,6 +1,6 @@
 //! The contract that every solver keeps.
 
-use crate::field::{FieldSink, Location, Shown};
+use crate::field::{FieldSink, Location, Shown, ShownAs};
 use crate::snapshot::{Section, SnapshotError};
 use std::any::Any;
 use std::fmt;
@@ -29,12 +29,36 @@ pub trait Solver: Any + Send {
     fn step(&mut self, dt: f64) -> Result<(), StepError> {
         self.advance(dt, 1)
     }
-    /// Brings what the solver lends to others up to date on the host; nothing to do on a CPU.
+    /// Brings what the solver lends, shows and saves up to date on the host; nothing to do on a CPU. A simulation calls it
+    /// before laws see the solver, before observers look that are due, and at the end of each of its own calls, after which
+    /// it may be saved: not after each step. A solver that nothing has changed since has nothing to do.
     fn publish(&mut self) {}
     /// Zeroes what couplings add to; only the simulation calls this.
     fn clear_inputs(&mut self) {}
-    /// Where the fields live.
-    fn location(&self) -> Location<'_>;
+    /// Where the fields live: one place or more, each with a name of its own. A material point method has its particles and
+    /// the nodes of its grid. The first place is that of what [`Solver::size`] counts.
+    fn places(&self) -> Vec<(&'static str, Location<'_>)>;
+    /// The first place.
+    ///
+    /// # Panics
+    /// When the solver has none.
+    fn location(&self) -> Location<'_> {
+        self.place("").expect("a solver has at least one place")
+    }
+    /// The place of this name, or the first one for an empty name.
+    fn place(&self, name: &str) -> Option<Location<'_>> {
+        let mut places = self.places().into_iter();
+        places.find(|(other, _)| name.is_empty() || *other == name).map(|(_, location)| location)
+    }
+    /// All fields and links that live at the place of this name, and all numbers: what belongs in a file of that place.
+    fn shown_at(&self, place: &str) -> Vec<Shown> {
+        let is_first = self.places().first().is_some_and(|(first, _)| *first == place) || place.is_empty();
+        let lives_there = |shown: &Shown| match shown.kind {
+            ShownAs::Number => true,
+            ShownAs::Field | ShownAs::Link => shown.place == place || (is_first && shown.place.is_empty()),
+        };
+        self.shown().into_iter().filter(lives_there).collect()
+    }
     /// Everything that [`Solver::show`] can show.
     fn shown(&self) -> Vec<Shown>;
     /// Shows fields and numbers; computes only what the sink wants.

@@ -102,13 +102,12 @@ impl<D: Dim> Solver for PrescribedMotion<D> {
         })
     }
 
-    fn location(&self) -> Location<'_> {
-        Location::Points(D::vector_field(&self.position))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        vec![("bodies", Location::Points(D::vector_field(&self.position)))]
     }
 
     fn shown(&self) -> Vec<Shown> {
-        let field =
-            |name: &str, unit, meaning| Shown { name: name.to_owned(), unit, meaning, kind: ShownAs::Field };
+        let field = |name, unit, meaning| Shown::new(name, unit, meaning, ShownAs::Field);
         vec![field("velocity", "m/s", "velocity of the centre"), field("radius", "m", "radius")]
     }
 

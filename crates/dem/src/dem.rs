@@ -516,8 +516,8 @@ impl<D: Dim> Solver for Dem<D> {
         })
     }
 
-    fn location(&self) -> Location<'_> {
-        Location::Points(D::vector_field(&self.grains.position))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        vec![("grains", Location::Points(D::vector_field(&self.grains.position)))]
     }
 
     fn shown(&self) -> Vec<Shown> {

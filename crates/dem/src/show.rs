@@ -247,11 +247,8 @@ const LINKS: &[(&str, &str, &str)] = &[
 impl<D: Dim> Dem<D> {
     pub(crate) fn catalogue(&self) -> Vec<Shown> {
         let shown = |kind| {
-            move |&(name, unit, meaning): &(&str, &'static str, &'static str)| Shown {
-                name: name.to_owned(),
-                unit,
-                meaning,
-                kind,
+            move |&(name, unit, meaning): &(&str, &'static str, &'static str)| {
+                Shown::new(name, unit, meaning, kind)
             }
         };
         let mut list: Vec<Shown> = NUMBERS.iter().map(shown(ShownAs::Number)).collect();
@@ -259,7 +256,7 @@ impl<D: Dim> Dem<D> {
         for wall in &self.walls {
             for axis in D::AXES {
                 let name = wall_force_name(&wall.name, axis);
-                list.push(Shown { name, unit: "N", meaning: "force on the wall", kind: ShownAs::Number });
+                list.push(Shown::new(name, "N", "force on the wall", ShownAs::Number));
             }
         }
         if !self.movers.is_empty() {

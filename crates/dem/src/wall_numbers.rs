@@ -115,12 +115,8 @@ impl<D: Dim> Dem<D> {
     }
 
     pub(crate) fn wall_catalogue(&self) -> impl Iterator<Item = Shown> + '_ {
-        self.wall_named().map(|(_, Named { name, unit, meaning, .. })| Shown {
-            name,
-            unit,
-            meaning,
-            kind: ShownAs::Number,
-        })
+        let shown = |Named { name, unit, meaning, .. }| Shown::new(name, unit, meaning, ShownAs::Number);
+        self.wall_named().map(move |(_, named)| shown(named))
     }
 
     pub(crate) fn show_wall_numbers(&self, sink: &mut dyn FieldSink) {

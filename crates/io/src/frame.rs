@@ -1,7 +1,7 @@
 //! What a solver shows at one time, kept until it is written.
 
 use crate::error::IoError;
-use granular_core::{FieldRef, FieldSink, Location};
+use granular_core::{FieldRef, FieldSink, Location, Solver};
 use std::path::Path;
 
 /// Owned values of a field, one per point, cell or link.
@@ -110,6 +110,11 @@ impl Frame {
     /// A frame for all that a solver shows.
     pub fn wanting_all() -> Self {
         Self::default()
+    }
+
+    /// A frame for all that lives at a place of a solver, and its numbers. The first place goes by an empty name, too.
+    pub fn of_place(solver: &dyn Solver, place: &str) -> Self {
+        Self::wanting(solver.shown_at(place).iter().map(|shown| shown.name.as_str()))
     }
 
     /// Forgets what was collected, so that the same names are wanted at another time.

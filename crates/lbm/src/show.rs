@@ -35,12 +35,7 @@ const NUMBERS: [(&str, &str, &str); 5] = [
 ];
 
 pub(crate) fn shown<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>) -> Vec<Shown> {
-    let of = |(name, unit, meaning): (&str, &'static str, &'static str), kind| Shown {
-        name: name.to_owned(),
-        unit,
-        meaning,
-        kind,
-    };
+    let of = |(name, unit, meaning): (&str, _, _), kind| Shown::new(name, unit, meaning, kind);
     let mut list: Vec<Shown> = FIELDS.map(|field| of(field, ShownAs::Field)).into();
     if L::Dim::N == 2 {
         list.push(of(STREAM_FUNCTION, ShownAs::Field));

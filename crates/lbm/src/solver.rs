@@ -201,14 +201,14 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         self.populations.slabs(&self.runs).inside_pool(|| self.advance_by(dt, steps))
     }
 
-    fn location(&self) -> Location<'_> {
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
         let mut origin = self.setup.origin.padded();
         let spacing = self.setup.spacing;
         // One layer of cells about z = 0 in the plane.
         if L::Dim::N == 2 {
             origin[2] = -0.5 * spacing;
         }
-        Location::Grid { origin, spacing: [spacing; 3], cells: self.setup.cells }
+        vec![("cells", Location::Grid { origin, spacing: [spacing; 3], cells: self.setup.cells })]
     }
 
     fn shown(&self) -> Vec<Shown> {

@@ -1,123 +1,17 @@
 //! How coupled solvers share a step: a tank that leaks into a bucket.
 
+mod chain;
+mod device;
+mod free;
+mod stations;
+mod vessel;
+
 use super::*;
-use crate::exchange::{Accepts, Provides, Quantity};
-use crate::field::{FieldSink, Location, Shown};
-use crate::solver::{Memory, StepLimit, StepRule};
-
-/// Water over the brim \[m\].
-struct Level;
-
-impl Quantity for Level {
-    const NAME: &'static str = "level";
-    const UNIT: &'static str = "m";
-    type View<'a> = f64;
-    type ViewMut<'a> = &'a mut f64;
-}
-
-/// Decays towards its input; keeps the steps it took.
-struct Vessel {
-    level: f64,
-    input: f64,
-    limit: Option<(f64, StepRule)>,
-    taken: Vec<f64>,
-}
-
-impl Vessel {
-    fn new(level: f64, limit: Option<(f64, StepRule)>) -> Self {
-        Self { level, input: 0.0, limit, taken: Vec::new() }
-    }
-}
-
-impl Provides<Level> for Vessel {
-    fn view(&self) -> f64 {
-        self.level
-    }
-}
-
-impl Accepts<Level> for Vessel {
-    fn view_mut(&mut self) -> &mut f64 {
-        &mut self.input
-    }
-}
-
-impl Solver for Vessel {
-    fn name(&self) -> &'static str {
-        "vessel"
-    }
-    fn size(&self) -> (usize, &'static str) {
-        (1, "vessel")
-    }
-    fn limits(&self, report: &mut Limits) {
-        if let Some((dt, rule)) = self.limit {
-            report.steps.push(StepLimit { name: "leak", dt, rule, why: "of the test".to_owned() });
-        }
-    }
-    fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
-        for _ in 0..steps {
-            self.level += dt * (self.input - self.level);
-            self.taken.push(dt);
-        }
-        Ok(())
-    }
-    fn clear_inputs(&mut self) {
-        self.input = 0.0;
-    }
-    fn location(&self) -> Location<'_> {
-        Location::Points(crate::field::FieldRef::Vector2(&[]))
-    }
-    fn shown(&self) -> Vec<Shown> {
-        Vec::new()
-    }
-    fn show(&self, _: &mut dyn FieldSink) {}
-    fn save(&self, to: &mut Section) {
-        to.put("level and input", &[self.level, self.input]);
-    }
-    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        let values: Vec<f64> = from.array_of("level and input", 2)?;
-        (self.level, self.input) = (values[0], values[1]);
-        Ok(())
-    }
-    fn memory(&self) -> Memory {
-        Memory::default()
-    }
-}
-
-/// Adds the level of each to the input of the other; keeps how much went forward.
-#[derive(Default)]
-struct Pipe {
-    moved: f64,
-}
-
-impl<A: Accepts<Level> + Provides<Level>, B: Accepts<Level> + Provides<Level>> Coupling<A, B> for Pipe {
-    fn name(&self) -> &'static str {
-        "pipe"
-    }
-    fn attach(&mut self, _: &mut A, fast: &mut B) -> Result<(), CouplingError> {
-        let below_brim = fast.view() < 100.0;
-        below_brim.then_some(()).ok_or_else(|| CouplingError::new("pipe", "the vessel is full"))
-    }
-    fn forward(&mut self, fast: &B, slow: &mut A) -> Result<(), StepError> {
-        *slow.view_mut() += fast.view();
-        self.moved += fast.view();
-        Ok(())
-    }
-    fn backward(&mut self, slow: &A, fast: &mut B) -> Result<(), StepError> {
-        *fast.view_mut() += slow.view();
-        Ok(())
-    }
-    fn limits(&self, _: &A, _: &B, report: &mut Limits) {
-        let why = "of the pipe".to_owned();
-        report.steps.push(StepLimit { name: "pipe", dt: 0.5, rule: StepRule::AtMost, why });
-    }
-    fn save(&self, to: &mut Section) {
-        to.put_one("moved", self.moved);
-    }
-    fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        self.moved = from.one("moved")?;
-        Ok(())
-    }
-}
+use crate::field::{FieldRef, FieldSink, Numbers};
+use crate::observer::{Flow, ObserverError, Scheduled};
+use crate::solver::StepRule;
+use std::sync::atomic::AtomicBool;
+use vessel::{Pipe, Vessel};
 
 const FAST: Option<(f64, StepRule)> = Some((0.03, StepRule::AtMost));
 
@@ -178,10 +72,12 @@ fn steps_that_do_not_fit_are_refused_with_both_named() {
 }
 
 #[test]
-fn a_solver_is_slow_to_all_or_fast_to_all() {
+fn what_is_refused_leaves_all_as_it_was() {
     let (mut simulation, tank, bucket) = pair(None, FAST);
     let error = simulation.couple(bucket, tank, Pipe::default()).unwrap_err();
-    assert_eq!(error.place, "bucket");
+    assert!(error.reason.contains("ring `tank` - `bucket` - `tank`"), "{error}");
+    let error = simulation.couple(tank, tank, Pipe::default()).unwrap_err();
+    assert_eq!(error.reason, "both ends are one solver");
     let full = simulation.add("full", Vessel::new(200.0, None)).unwrap();
     let error = simulation.couple(tank, full, Pipe::default()).unwrap_err();
     assert_eq!(error.reason, "the vessel is full");
@@ -228,4 +124,43 @@ fn a_restart_takes_up_solvers_and_couplings() {
     assert_eq!(names, ["clock", "solver tank", "solver bucket", "coupling 0 pipe"]);
     let missing = second.restore(&saved[..3]).unwrap_err().to_string();
     assert!(missing.contains("coupling 0 pipe"), "{missing}");
+}
+
+#[test]
+fn couplings_show_numbers_and_fields_as_solvers_do() {
+    struct Fields(Vec<(String, f64)>);
+    impl FieldSink for Fields {
+        fn wants(&self, name: &str) -> bool {
+            name == "difference"
+        }
+        fn field(&mut self, name: &str, _: &str, values: FieldRef<'_>) {
+            let FieldRef::Scalar([value]) = values else { panic!("one vessel, one value: {values:?}") };
+            self.0.push((name.to_owned(), *value));
+        }
+        fn number(&mut self, name: &str, _: &str, _: f64) {
+            panic!("`{name}` was not wanted");
+        }
+    }
+    let (mut simulation, tank, bucket) = pair(Some((0.1, StepRule::AtMost)), FAST);
+    simulation.begin_segment(0.1).unwrap();
+    simulation.advance(3).unwrap();
+    let view = simulation.couplings().next().expect("there is one");
+    assert_eq!((view.name(), view.slow(), view.fast()), ("pipe", "tank", "bucket"));
+    let names: Vec<String> = view.shown().into_iter().map(|shown| shown.name).collect();
+    assert_eq!(names, ["moved", "difference"]);
+    let mut numbers = Numbers::wanting(["moved"]);
+    view.show(&mut numbers);
+    let section = &simulation.save()[3];
+    assert_eq!(numbers.get("moved"), Some(section.one::<f64>("moved").unwrap()));
+    let mut fields = Fields(Vec::new());
+    view.show(&mut fields);
+    let difference = simulation.get(bucket).level - simulation.get(tank).level;
+    assert_eq!(fields.0, [("difference".to_owned(), difference)]);
+    // A law that shows nothing needs to say nothing.
+    let log = stations::Log::default();
+    let mut simulation = Simulation::named("a", Box::new(stations::Station::new("a", 1.0, &log)));
+    let (a, b) =
+        (simulation.find("a").unwrap(), simulation.add("b", stations::Station::new("b", 1.0, &log)).unwrap());
+    simulation.couple(a, b, stations::Line::new("line", &log)).unwrap();
+    assert!(simulation.couplings().all(|view| view.shown().is_empty()));
 }

@@ -83,7 +83,9 @@ impl Contract {
 
     /// Takes steps that must succeed.
     pub(super) fn go(&self, solver: &mut dyn Solver, steps: u64, why: &'static str) -> Result<(), Breach> {
-        solver.advance(self.dt, steps).map_err(|error| Breach::new(why, format!("a step failed: {error}")))
+        let outcome = solver.advance(self.dt, steps);
+        solver.publish();
+        outcome.map_err(|error| Breach::new(why, format!("a step failed: {error}")))
     }
 
     /// Runs in pools of 1, 2, 3 and 8 threads give the same state. The state must change, or the
@@ -269,7 +271,7 @@ pub(super) fn state_of(solver: &dyn Solver) -> Section {
 }
 
 /// Compares two states byte by byte; names the first entry that differs.
-fn same(a: &Section, b: &Section, promise: &'static str, found: &str) -> Result<(), Breach> {
+pub(super) fn same(a: &Section, b: &Section, promise: &'static str, found: &str) -> Result<(), Breach> {
     if a == b {
         return Ok(());
     }
@@ -284,7 +286,7 @@ fn same(a: &Section, b: &Section, promise: &'static str, found: &str) -> Result<
     Err(Breach::new(promise, format!("{found} {place}")))
 }
 
-pub(super) fn in_pool<T: Send>(threads: usize, body: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn in_pool<T: Send>(threads: usize, body: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("a pool of a few threads can be built").install(body)
 }

@@ -7,8 +7,9 @@ use std::collections::HashSet;
 
 impl Contract {
     /// All that can be shown has a unique name and is shown exactly once, with its kind, its unit
-    /// and one value per item or link, when everything is wanted and when it alone is wanted;
-    /// what nobody wants is not shown.
+    /// and one value per point, cell or link of its place, when everything is wanted and when it
+    /// alone is wanted; what nobody wants is not shown. Places have names of their own, and the
+    /// first is that of what the solver counts.
     ///
     /// # Errors
     /// When the promise is not kept.
@@ -35,12 +36,33 @@ impl Contract {
 
 /// Shows `wanted` and returns the first fault.
 fn look(solver: &dyn Solver, wanted: &[Shown]) -> Option<String> {
-    let items = match solver.location() {
-        Location::Points(points) => points.len(),
+    let items_of = |location| match location {
+        Location::Points(points) => FieldRef::len(&points),
         Location::Grid { cells, .. } => cells.iter().product(),
     };
+    let places = solver.places();
+    let names: HashSet<&str> = places.iter().map(|(name, _)| *name).collect();
+    if names.len() < places.len() || names.contains("") || places.is_empty() {
+        return Some("names of places are missing or not unique".to_owned());
+    }
+    let items = items_of(places[0].1);
     if items != solver.size().0 {
-        return Some(format!("there are {} {}s at {items} places", solver.size().0, solver.size().1));
+        return Some(format!(
+            "there are {} {}s, but {items} {}",
+            solver.size().0,
+            solver.size().1,
+            places[0].0
+        ));
+    }
+    let mut items = Vec::new();
+    for shown in wanted {
+        let Some(location) = solver.place(shown.place) else {
+            return Some(format!(
+                "`{}` lives at `{}`, which is no place of the solver",
+                shown.name, shown.place
+            ));
+        };
+        items.push(items_of(location));
     }
     let mut watch = Watch { wanted, items, seen: vec![0; wanted.len()], links: None, fault: None };
     solver.show(&mut watch);
@@ -50,9 +72,17 @@ fn look(solver: &dyn Solver, wanted: &[Shown]) -> Option<String> {
     watch.fault.or(missing)
 }
 
+/// Values that were shown, and how many links they belong to.
+enum Length {
+    None,
+    Field(usize),
+    Links(usize, usize),
+}
+
 struct Watch<'a> {
     wanted: &'a [Shown],
-    items: usize,
+    /// How many points or cells there are where each lives.
+    items: Vec<usize>,
     seen: Vec<u32>,
     links: Option<usize>,
     fault: Option<String>,
@@ -63,7 +93,7 @@ impl Watch<'_> {
         self.fault.get_or_insert(fault);
     }
 
-    fn take(&mut self, name: &str, unit: &str, kind: ShownAs, length: Option<(usize, usize)>) {
+    fn take(&mut self, name: &str, unit: &str, kind: ShownAs, length: Length) {
         let Some(place) = self.wanted.iter().position(|shown| shown.name == name) else {
             return self.note(format!("`{name}` was shown although nobody wants it"));
         };
@@ -73,7 +103,12 @@ impl Watch<'_> {
             let found = format!("`{name}` was shown as {kind:?} in {unit}, not {shown:?}");
             return self.note(found);
         }
-        if let Some((found, expected)) = length.filter(|(found, expected)| found != expected) {
+        let (found, expected) = match length {
+            Length::None => return,
+            Length::Field(found) => (found, self.items[place]),
+            Length::Links(found, expected) => (found, expected),
+        };
+        if found != expected {
             self.note(format!("`{name}` has {found} values instead of {expected}"));
         }
     }
@@ -85,18 +120,20 @@ impl FieldSink for Watch<'_> {
     }
 
     fn field(&mut self, name: &str, unit: &str, values: FieldRef<'_>) {
-        self.take(name, unit, ShownAs::Field, Some((values.len(), self.items)));
+        self.take(name, unit, ShownAs::Field, Length::Field(values.len()));
     }
 
     fn number(&mut self, name: &str, unit: &str, _: f64) {
-        self.take(name, unit, ShownAs::Number, None);
+        self.take(name, unit, ShownAs::Number, Length::None);
     }
 
     fn links(&mut self, pairs: &[[u32; 2]]) {
         if self.links.replace(pairs.len()).is_some() {
             self.note("links were shown twice".to_owned());
         }
-        if let Some(pair) = pairs.iter().find(|pair| pair.iter().any(|&end| end as usize >= self.items)) {
+        let first = self.wanted.iter().position(|shown| shown.kind == ShownAs::Link);
+        let items = first.map_or(0, |first| self.items[first]);
+        if let Some(pair) = pairs.iter().find(|pair| pair.iter().any(|&end| end as usize >= items)) {
             self.note(format!("the link {pair:?} has an end that does not exist"));
         }
     }
@@ -105,6 +142,6 @@ impl FieldSink for Watch<'_> {
         let Some(links) = self.links else {
             return self.note(format!("`{name}` was shown before its links"));
         };
-        self.take(name, unit, ShownAs::Link, Some((values.len(), links)));
+        self.take(name, unit, ShownAs::Link, Length::Links(values.len(), links));
     }
 }

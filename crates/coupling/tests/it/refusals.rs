@@ -49,7 +49,9 @@ fn a_grain_of_another_solver_carries_an_obstacle() {
     let water = simulation.find::<Lbm2>("water").unwrap();
     let velocity = DVec2::new(0.05e-3 / dt, 0.0);
     let mut materials = Materials::new();
-    let glass = materials.add(granular_dem::Material::default()).unwrap();
+    // Soft enough for a tenth of the fluid's step to be stable.
+    let soft = granular_dem::Material { normal_stiffness: 160.0, ..Default::default() };
+    let glass = materials.add(soft).unwrap();
     let setup = granular_dem::Setup::<D2> {
         materials,
         grains: vec![Grain::at(CENTRE, 3e-3, glass).moving(velocity)],

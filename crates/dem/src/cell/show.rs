@@ -35,7 +35,7 @@ impl<D: Dim> Dem<D> {
         let Some(cell) = self.cell() else { return Vec::new() };
         let mut list = Vec::new();
         let mut add = |name: String, unit, meaning| {
-            list.push(Shown { name, unit, meaning, kind: ShownAs::Number });
+            list.push(Shown::new(name, unit, meaning, ShownAs::Number));
         };
         for (i, a) in D::AXES.iter().enumerate().filter(|&(i, _)| cell.is_periodic(i)) {
             for (j, b) in D::AXES.iter().enumerate().filter(|&(j, _)| cell.is_periodic(j)) {

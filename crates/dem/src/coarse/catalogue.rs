@@ -42,11 +42,6 @@ pub(super) fn needs(wants: impl Fn(&str) -> bool) -> Option<Wanted> {
 
 /// All that can be shown on a grid.
 pub(super) fn shown() -> Vec<Shown> {
-    let field = |&(name, unit, meaning): &(&str, &'static str, &'static str)| Shown {
-        name: name.to_owned(),
-        unit,
-        meaning,
-        kind: ShownAs::Field,
-    };
+    let field = |&(name, unit, meaning): &(&str, _, _)| Shown::new(name, unit, meaning, ShownAs::Field);
     FIELDS.iter().map(field).collect()
 }

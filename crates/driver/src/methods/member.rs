@@ -153,6 +153,6 @@ impl Number {
     /// As an entry of a list.
     pub fn shown(self, kind: ShownAs) -> Shown {
         let Self(name, unit, meaning) = self;
-        Shown { name: name.to_owned(), unit, meaning, kind }
+        Shown::new(name, unit, meaning, kind)
     }
 }

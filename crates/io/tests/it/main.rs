@@ -6,6 +6,7 @@
 mod files;
 #[cfg(unix)]
 mod kill;
+mod places;
 mod resume;
 
 use std::path::PathBuf;

@@ -33,6 +33,10 @@ pub(super) enum Fault {
     ShowsTooFew,
     SameNameTwice,
     LinksToNowhere,
+    PlacesInAnotherOrder,
+    SamePlaceTwice,
+    UnknownPlace,
+    AtAnotherPlace,
     StandsStill,
     Fails,
 }
@@ -164,16 +168,30 @@ impl Solver for Toy {
         Ok(())
     }
 
-    fn location(&self) -> Location<'_> {
-        Location::Points(FieldRef::Vector2(&self.position))
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
+        let cells = Location::Grid { origin: [0.0; 3], spacing: [1.0; 3], cells: [2, 3, 1] };
+        let points = Location::Points(FieldRef::Vector2(&self.position));
+        if self.has(Fault::PlacesInAnotherOrder) {
+            return vec![("cells", cells), ("oscillators", points)];
+        }
+        vec![
+            ("oscillators", points),
+            (if self.has(Fault::SamePlaceTwice) { "oscillators" } else { "cells" }, cells),
+        ]
     }
 
     fn shown(&self) -> Vec<Shown> {
-        let shown = |name: &str, kind| Shown { name: name.to_owned(), unit: "1", meaning: "a test", kind };
+        let shown = |name: &str, kind| Shown::new(name, "1", "a test", kind);
+        let place = if self.has(Fault::UnknownPlace) { "nodes" } else { "cells" };
         let mut list = vec![
             shown("energy", ShownAs::Number),
             shown("velocity", ShownAs::Field),
             shown("stretch", ShownAs::Link),
+            shown("height", ShownAs::Field).at(if self.has(Fault::AtAnotherPlace) {
+                "oscillators"
+            } else {
+                place
+            }),
         ];
         if self.has(Fault::SameNameTwice) {
             list.push(shown("energy", ShownAs::Number));
@@ -191,6 +209,9 @@ impl Solver for Toy {
         if sink.wants("velocity") || self.has(Fault::ShowsUnasked) {
             let count = if self.has(Fault::ShowsTooFew) { 3 } else { OSCILLATORS };
             sink.field("velocity", "1", FieldRef::Scalar(&self.velocity[..count]));
+        }
+        if sink.wants("height") {
+            sink.field("height", "1", FieldRef::Scalar(&[0.5; 6]));
         }
         if sink.wants("stretch") {
             sink.links(&[[0, 1], [1, if self.has(Fault::LinksToNowhere) { OSCILLATORS as u32 } else { 2 }]]);

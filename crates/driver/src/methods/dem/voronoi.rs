@@ -149,11 +149,8 @@ impl Tessellated {
 pub(super) fn shown(solver: &dyn Solver) -> Vec<Shown> {
     let Some(packing) = Packing::of(solver) else { return Vec::new() };
     let entry = |kind| {
-        move |&(name, unit, meaning): &(&str, &'static str, &'static str)| Shown {
-            name: name.to_owned(),
-            unit,
-            meaning,
-            kind,
+        move |&(name, unit, meaning): &(&str, &'static str, &'static str)| {
+            Shown::new(name, unit, meaning, kind)
         }
     };
     let stresses = STRESSES.iter().take(packing.stresses()).map(|(name, _)| (*name, "Pa", STRESS));

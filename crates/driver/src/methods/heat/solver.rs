@@ -61,16 +61,15 @@ impl Solver for Heat {
         Ok(())
     }
 
-    fn location(&self) -> Location<'_> {
+    fn places(&self) -> Vec<(&'static str, Location<'_>)> {
         let (spacing, cells) = ([self.spacing; 3], [self.cells, self.cells, 1]);
-        Location::Grid { origin: [0.0; 3], spacing, cells }
+        vec![("cells", Location::Grid { origin: [0.0; 3], spacing, cells })]
     }
 
     fn shown(&self) -> Vec<Shown> {
-        let shown = |name: &str, meaning, kind| Shown { name: name.to_owned(), unit: "K", meaning, kind };
         vec![
-            shown("largest_temperature", "largest temperature of any cell", ShownAs::Number),
-            shown("temperature", "temperature", ShownAs::Field),
+            Shown::new("largest_temperature", "K", "largest temperature of any cell", ShownAs::Number),
+            Shown::new("temperature", "K", "temperature", ShownAs::Field),
         ]
     }
 

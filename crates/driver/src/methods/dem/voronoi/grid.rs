@@ -15,12 +15,12 @@ const LEAST: f64 = 1e-6;
 /// What can be shown on a grid: of disks without a periodic cell.
 pub(in super::super) fn shown_on_grid(solver: &dyn Solver) -> Vec<Shown> {
     match Packing::of(solver) {
-        Some(Packing::Plane(dem)) if dem.cell().is_none() => vec![Shown {
-            name: LOCAL_DENSITY.to_owned(),
-            unit: "1",
-            meaning: "share of the grains in Voronoi cells, as far as these lie in the cell, without the free surface",
-            kind: ShownAs::Field,
-        }],
+        Some(Packing::Plane(dem)) if dem.cell().is_none() => vec![Shown::new(
+            LOCAL_DENSITY,
+            "1",
+            "share of the grains in Voronoi cells, as far as these lie in the cell, without the free surface",
+            ShownAs::Field,
+        )],
         _ => Vec::new(),
     }
 }
