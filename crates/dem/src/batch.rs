@@ -5,9 +5,10 @@
 //! they are handed out in the order of the list: neither the width of registers nor where a batch
 //! begins changes a bit.
 
-use crate::kernel::{Body, DEEPEST, Pair, View, push_of};
+use crate::kinematics::{Pair, push_of};
 use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
+use crate::view::{Body, DEEPEST, View};
 use granular_core::{Dim, Linear};
 use multiversion::multiversion;
 

@@ -22,14 +22,13 @@
 
 mod control;
 pub(crate) mod images;
-mod matrix;
 mod motion;
 mod show;
 mod state;
 mod step;
 
 pub use control::{CellControl, Control};
-pub use matrix::Matrix;
+pub use granular_core::Matrix;
 
 use crate::material::SetupError;
 use granular_core::{Dim, Linear, Vector};

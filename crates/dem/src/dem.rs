@@ -2,23 +2,24 @@
 
 use crate::cell::Cell;
 use crate::choice::{choose_law, needs_rotation};
-use crate::clock::Clock;
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
-use crate::kernel::{Trouble, View};
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
-use crate::moving::{Movers, Reaction};
+use crate::pass::Trouble;
 use crate::setup::{ContactModel, LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::shaking::Shaken;
 use crate::traffic::Traffic;
-use crate::wall::{Shape, Wall};
+use crate::view::View;
+use crate::walls::Wall;
 use crate::{lists, motion};
+use granular_core::Shape;
 use granular_core::solver::check_step;
+use granular_core::walls::{MovingWalls, Reaction, WallGeometry};
 use granular_core::{
     Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
-    SnapshotError, Solver, StepError,
+    SnapshotError, Solver, StepClock, StepError,
 };
 
 /// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
@@ -38,8 +39,8 @@ const SHORTEST: f64 = 0.08;
 pub struct Dem<D: Dim> {
     pub(crate) materials: Materials,
     pub(crate) walls: Vec<Wall<D>>,
-    pub(crate) movers: Movers<D>,
-    pub(crate) clock: Clock,
+    pub(crate) moving_walls: MovingWalls<D>,
+    pub(crate) clock: StepClock,
     pub(crate) traffic: Traffic<D>,
     pub(crate) gravity: D::Vec,
     pub(crate) shaken: Option<Shaken<D>>,
@@ -106,10 +107,10 @@ impl<D: Dim> Dem<D> {
             return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
         }
         let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
-        let movers = Movers::of(&walls)?;
+        let moving_walls = MovingWalls::of(&geometry(&walls))?;
         let mut dem = Self {
-            movers,
-            clock: Clock::default(),
+            moving_walls,
+            clock: StepClock::default(),
             traffic: Traffic::new(list.len()),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
@@ -216,16 +217,16 @@ impl<D: Dim> Dem<D> {
     pub fn set_moving(&mut self, name: &str, moves: bool) -> bool {
         let Some(wall) = self.walls.iter().position(|wall| wall.name == name) else { return false };
         let time = self.clock.time();
-        let found = self.movers.set_running(wall, moves, time);
+        let found = self.moving_walls.set_running(wall, moves, time);
         if found {
-            self.movers.place(time);
+            self.moving_walls.place(time);
         }
         found
     }
 
     /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
     pub fn wall_work(&self) -> f64 {
-        self.movers.work
+        self.moving_walls.work
     }
 
     /// Where a wall is \[m\]: the point with which a plane was given, moved along with it; for other walls how far they
@@ -234,7 +235,7 @@ impl<D: Dim> Dem<D> {
     /// # Panics
     /// When there is no wall of this index.
     pub fn wall_position(&self, wall: usize) -> D::Vec {
-        let shift = self.movers.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
+        let shift = self.moving_walls.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
         match self.walls[wall].shape {
             Shape::Plane { point, .. } => point + shift,
             _ => shift,
@@ -292,7 +293,7 @@ impl<D: Dim> Dem<D> {
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
         let cell = self.cell.as_deref();
-        View { cell, ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt) }
+        View { cell, ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt) }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step, zero when that is not known.
@@ -300,8 +301,8 @@ impl<D: Dim> Dem<D> {
         self.reach = self.reach_for(stride);
         self.travel = 0.0;
         let (_, largest) = self.grains.radius_range();
-        self.movers.note_distances(&self.grains.position, 2.0 * self.reach + largest);
-        let view = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
+        self.moving_walls.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let view = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
         self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
     }
 
@@ -363,16 +364,16 @@ impl<D: Dim> Dem<D> {
             opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
             self.load_and_kick(dt, opened)?;
         }
-        self.movers.place(self.clock.time());
+        self.moving_walls.place(self.clock.time());
         Ok(())
     }
 
     /// One step between its two halves: lists, loads, kick.
     fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
         let mut stride = motion::fastest(&self.speeds) * dt;
-        if !self.movers.is_empty() {
-            stride = stride.max(self.movers.fastest(dt) * dt);
-            self.movers.place_in_step(self.clock.time(), dt);
+        if !self.moving_walls.is_empty() {
+            stride = stride.max(self.moving_walls.fastest(dt) * dt);
+            self.moving_walls.place_in_step(self.clock.time(), dt);
         }
         if !stride.is_finite() {
             return Err(self.not_finite());
@@ -384,7 +385,7 @@ impl<D: Dim> Dem<D> {
         }
         self.push(dt, stride);
         self.last_dt = dt;
-        if !self.movers.is_empty() {
+        if !self.moving_walls.is_empty() {
             self.move_walls(dt);
         }
         let shaking = self.shake(dt);
@@ -407,9 +408,9 @@ impl<D: Dim> Dem<D> {
 
     /// Tells walls how grains pushed them.
     pub(crate) fn move_walls(&mut self, dt: f64) {
-        self.movers.reactions.fill(Reaction::default());
-        self.pairs.add_reactions(&mut self.movers.reactions);
-        self.movers.take_reactions(dt, self.options.ledger);
+        self.moving_walls.reactions.fill(Reaction::default());
+        self.pairs.add_reactions(&mut self.moving_walls.reactions);
+        self.moving_walls.take_reactions(dt, self.options.ledger);
     }
 
     /// Writes the loads of all contacts where the accelerations will be.
@@ -422,7 +423,7 @@ impl<D: Dim> Dem<D> {
             dt,
             predicts: self.pairs.predicts(),
             margin,
-            ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
+            ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt)
         };
         self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
         (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
@@ -438,7 +439,7 @@ impl<D: Dim> Dem<D> {
 
     pub(crate) fn too_deep(&self, trouble: Trouble) -> StepError {
         let id = self.grains.id[trouble.first as usize];
-        let (share, allowed) = (trouble.overlap / trouble.radius, crate::kernel::DEEPEST);
+        let (share, allowed) = (trouble.overlap / trouble.radius, crate::view::DEEPEST);
         // As if this was the hardest impact; it may be harder still a step later.
         let stiffer = match self.options.contact {
             ContactModel::Linear => {
@@ -459,9 +460,22 @@ impl<D: Dim> Dem<D> {
     }
 }
 
+/// What motion needs to know of walls.
+fn geometry<D: Dim>(walls: &[Wall<D>]) -> Vec<WallGeometry<'_, D>> {
+    walls
+        .iter()
+        .map(|Wall { name, shape, motion, held, .. }| WallGeometry {
+            name,
+            shape,
+            motion: *motion,
+            held: *held,
+        })
+        .collect()
+}
+
 pub(crate) fn view_of<'a, D: Dim>(
     grains: &'a Grains<D>,
-    (walls, movers): (&'a [Wall<D>], &'a Movers<D>),
+    (walls, moving_walls): (&'a [Wall<D>], &'a MovingWalls<D>),
     options: &Options,
     last_dt: f64,
 ) -> View<'a, D> {
@@ -476,7 +490,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         material: &grains.material,
         first_material: grains.first_material,
         walls,
-        poses: &movers.poses,
+        poses: &moving_walls.poses,
         cell: None,
         dt: 0.0,
         last_dt,

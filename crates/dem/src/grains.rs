@@ -2,6 +2,7 @@
 
 use crate::material::{MaterialId, Materials, SetupError};
 use granular_core::search::curve_order;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 /// Largest over smallest radius.
@@ -210,29 +211,19 @@ impl<D: Dim> Grains<D> {
         self.material = from.array_of("material", material)?;
         self.spin = from.array_of("spin", turning)?;
         self.spin_acceleration = from.array_of("spin acceleration", turning)?;
-        check_finite("position", self.position.iter().all(|x| x.is_finite()))?;
-        check_finite("velocity", self.velocity.iter().all(|v| v.is_finite()))?;
-        check_finite("acceleration", self.acceleration.iter().all(|a| a.is_finite()))?;
-        check_finite("radius", self.radius.iter().all(|r| r.is_finite() && *r > 0.0))?;
-        check_finite("mass", self.mass.iter().all(|m| m.is_finite() && *m > 0.0))?;
-        check_finite("spin", self.spin.iter().all(|w| w.is_finite()))?;
-        check_finite("spin acceleration", self.spin_acceleration.iter().all(|a| a.is_finite()))
+        check_entry("position", self.position.iter().all(|x| x.is_finite()))?;
+        check_entry("velocity", self.velocity.iter().all(|v| v.is_finite()))?;
+        check_entry("acceleration", self.acceleration.iter().all(|a| a.is_finite()))?;
+        check_entry("radius", self.radius.iter().all(|r| r.is_finite() && *r > 0.0))?;
+        check_entry("mass", self.mass.iter().all(|m| m.is_finite() && *m > 0.0))?;
+        check_entry("spin", self.spin.iter().all(|w| w.is_finite()))?;
+        check_entry("spin acceleration", self.spin_acceleration.iter().all(|a| a.is_finite()))
     }
 }
 
 /// Mass of a grain \[kg; kg/m in the plane\].
 fn mass_of<D: Dim>(grain: &Grain<D>, materials: &Materials) -> f64 {
     materials.get(grain.material).density * D::ball_volume(grain.radius)
-}
-
-/// Refuses an entry of a snapshot with values that no step would notice, such as the spin of a
-/// grain that touches nothing.
-pub(crate) fn check_finite(entry: &str, fits: bool) -> Result<(), SnapshotError> {
-    if fits {
-        return Ok(());
-    }
-    let found = "a value that is not finite or out of range".to_owned();
-    Err(SnapshotError::Damaged { place: format!("solver/{entry}"), found })
 }
 
 fn keep<T>(values: &mut Vec<T>, stays: &[bool]) {

@@ -2,11 +2,11 @@
 
 mod stiffest;
 
-use crate::contacts::{Contact, Partner};
+use crate::contact::{Contact, Partner};
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
 use crate::setup::{ContactModel, LeverArm};
-use crate::wall::Shape;
+use granular_core::Shape;
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule, Vector};
 use stiffest::{Oscillator, Stiffest};
 
@@ -103,7 +103,7 @@ impl<D: Dim> Dem<D> {
         let layer = 2.0 * (self.len() as f64).powf(1.0 - 1.0 / D::N as f64);
         let grains = layer.min(self.len() as f64).max(1.0);
         let stiffness = pairs.iter().map(|pair| pair.stiffness).fold(0.0, f64::max);
-        let (wall, servo) = self.movers.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
+        let (wall, servo) = self.moving_walls.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
         Some(StepLimit {
             name: "wall under a force",
             dt: 2.0 * (servo.mass / (grains * stiffness)).sqrt(),
@@ -124,7 +124,7 @@ impl<D: Dim> Dem<D> {
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
-            allowed: 100.0 * crate::kernel::DEEPEST,
+            allowed: 100.0 * crate::view::DEEPEST,
             unit: "% of the radius",
             refuses: true,
             why: format!(
@@ -137,7 +137,7 @@ impl<D: Dim> Dem<D> {
     /// How stiff the contacts of a pair must be for an allowed overlap, when that of its hardest impact over the radius is
     /// too large.
     fn stiffer(&self, pair: Option<&Stiffest>, overlap: f64) -> String {
-        let too_much = overlap / crate::kernel::DEEPEST;
+        let too_much = overlap / crate::view::DEEPEST;
         let Some(pair) = pair.filter(|_| too_much > 1.0) else { return String::new() };
         match self.options.contact {
             ContactModel::Linear => {
@@ -157,7 +157,7 @@ impl<D: Dim> Dem<D> {
         let gravity = self.gravity.length();
         let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
         let coming = self.traffic.inlets().map(|inlet| inlet.velocity.length()).fold(0.0, f64::max);
-        (speed.max(coming) + self.movers.fastest_ever(), fall)
+        (speed.max(coming) + self.moving_walls.fastest_ever(), fall)
     }
 
     /// Radius of the smallest grain that there is or may come in \[m\].

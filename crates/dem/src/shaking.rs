@@ -1,9 +1,9 @@
 //! Shaking: an acceleration that all grains feel beside gravity, as on a table that is shaken and seen from it.
 
 use crate::dem::Dem;
-use crate::grains::check_finite;
 use crate::material::SetupError;
 use core::f64::consts::TAU;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 /// Name in a snapshot.
@@ -93,6 +93,6 @@ pub(crate) fn restore<D: Dim>(from: &Section) -> Result<Option<Shaken<D>>, Snaps
     let acceleration = from.array_of("acceleration of shaking", 1)?[0];
     let numbers: Vec<f64> = from.array_of(NUMBERS, 4)?;
     let shaking = Shaking { acceleration, from: numbers[0], to: numbers[1], pass: numbers[2] };
-    check_finite(NUMBERS, shaking.check().is_ok() && numbers[3].is_finite() && numbers[3] >= 0.0)?;
+    check_entry(NUMBERS, shaking.check().is_ok() && numbers[3].is_finite() && numbers[3] >= 0.0)?;
     Ok(Some(Shaken { shaking, age: numbers[3] }))
 }

@@ -1,10 +1,10 @@
 //! What the solver shows: energies, the front of the flow, fields and contacts. Everything is
 //! computed from the state when it is asked for.
 
-use crate::contacts::{Contact, Partner};
+use crate::contact::{Contact, Partner};
 use crate::dem::Dem;
-use crate::kernel::View;
 use crate::ledger::Losses;
+use crate::view::View;
 use granular_core::glam::DVec3;
 use granular_core::{Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
 
@@ -64,7 +64,7 @@ impl<D: Dim> Dem<D> {
     /// present energy and all losses; the work of moving walls is put in. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        let put_in = self.injected + self.movers.work + self.cell().map_or(0.0, |cell| cell.work());
+        let put_in = self.injected + self.moving_walls.work + self.cell().map_or(0.0, |cell| cell.work());
         Some(initial + put_in - self.energies().mechanical() - self.losses.total())
     }
 
@@ -262,7 +262,7 @@ impl<D: Dim> Dem<D> {
                 list.push(Shown { name, unit: "N", meaning: "force on the wall", kind: ShownAs::Number });
             }
         }
-        if !self.movers.is_empty() {
+        if !self.moving_walls.is_empty() {
             list.push(shown(ShownAs::Number)(&WALL_WORK));
         }
         list.extend(self.wall_catalogue());
@@ -282,7 +282,7 @@ impl<D: Dim> Dem<D> {
         {
             sink.number(name, unit, value);
         }
-        if !self.movers.is_empty() && sink.wants(WALL_WORK.0) {
+        if !self.moving_walls.is_empty() && sink.wants(WALL_WORK.0) {
             sink.number(WALL_WORK.0, WALL_WORK.1, self.wall_work());
         }
         self.show_cell(sink);

@@ -1,10 +1,10 @@
 //! What a snapshot holds: grains, memories of contacts, and what changes between stages.
 
 use crate::dem::Dem;
-use crate::grains::check_finite;
 use crate::ledger::Losses;
 use crate::material::MaterialId;
 use crate::shaking;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 impl<D: Dim> Dem<D> {
@@ -28,13 +28,13 @@ impl<D: Dim> Dem<D> {
         if self.keeps_time() {
             self.clock.save(to);
         }
-        self.movers.save(to);
+        self.moving_walls.save(to);
         self.traffic.save(to);
     }
 
     /// Whether anything depends on the time.
     fn keeps_time(&self) -> bool {
-        !self.movers.is_empty() || !self.traffic.is_empty()
+        !self.moving_walls.is_empty() || !self.traffic.is_empty()
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -64,16 +64,16 @@ impl<D: Dim> Dem<D> {
         self.initial_energy = self.options.ledger.then_some(energy[1]);
         let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
         self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
-        check_finite("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
-        check_finite("last step taken", self.last_dt.is_finite() && self.last_dt >= 0.0)?;
-        check_finite("gravity", self.gravity.is_finite())?;
-        check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
-        check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
+        check_entry("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
+        check_entry("last step taken", self.last_dt.is_finite() && self.last_dt >= 0.0)?;
+        check_entry("gravity", self.gravity.is_finite())?;
+        check_entry("losses", losses.iter().all(|loss| loss.is_finite()))?;
+        check_entry("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
         if self.keeps_time() {
             self.clock.restore(from)?;
         }
-        self.movers.restore(from)?;
-        self.movers.place(self.clock.time());
+        self.moving_walls.restore(from)?;
+        self.moving_walls.place(self.clock.time());
         self.traffic.restore(from)?;
         self.list(0.0, None);
         Ok(())

@@ -4,8 +4,10 @@
 //! sizes are drawn from the seed and the number of the grain, never from a stream: there is no random state.
 
 use crate::dem::Dem;
-use crate::grains::{Grain, check, check_finite, check_sizes};
+use crate::grains::{Grain, check, check_sizes};
 use crate::material::{MaterialId, SetupError};
+use granular_core::random::uniform_at;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError, Vector};
 use room::{Ball, Room};
 
@@ -182,7 +184,7 @@ impl<D: Dim> Traffic<D> {
             return Ok(());
         }
         let clocks: Vec<[f64; 3]> = from.array_of("clocks of inlets", self.sources.len())?;
-        check_finite("clocks of inlets", clocks.iter().flatten().all(|value| value.is_finite()))?;
+        check_entry("clocks of inlets", clocks.iter().flatten().all(|value| value.is_finite()))?;
         let tried: Vec<u64> = from.array_of("grains due", self.sources.len())?;
         for ((source, [runs, before, since]), tried) in self.sources.iter_mut().zip(clocks).zip(tried) {
             (source.before, source.tried) = (before, tried);
@@ -191,7 +193,7 @@ impl<D: Dim> Traffic<D> {
         self.next_id = from.one("next identifier")?;
         let counts: Vec<u64> = from.array_of("grains exchanged", 3)?;
         let sums: Vec<f64> = from.array_of("mass and energy exchanged", 3)?;
-        check_finite("mass and energy exchanged", sums.iter().all(|sum| sum.is_finite()))?;
+        check_entry("mass and energy exchanged", sums.iter().all(|sum| sum.is_finite()))?;
         self.done = Exchanged {
             inserted: counts[0],
             not_placed: counts[1],
@@ -202,20 +204,6 @@ impl<D: Dim> Traffic<D> {
         };
         Ok(())
     }
-}
-
-/// A number in [0, 1) for a seed and the place in a table of numbers (splitmix64).
-fn uniform(seed: u64, grain: u64, draw: u64) -> f64 {
-    let mix = |z: u64| {
-        let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    let golden = 0x9e37_79b9_7f4a_7c15_u64;
-    let bits =
-        mix(mix(mix(seed.wrapping_add(golden)).wrapping_add(grain))
-            .wrapping_add(golden.wrapping_mul(draw + 1)));
-    (bits >> 11) as f64 * 2.0_f64.powi(-53)
 }
 
 impl<D: Dim> Dem<D> {
@@ -408,18 +396,18 @@ impl<D: Dim> Dem<D> {
 
     /// The grain of a number where it fits in, if it does.
     fn fit(&self, inlet: &Inlet<D>, number: u64, near: &Room<D>) -> Option<Grain<D>> {
-        let pick = uniform(inlet.seed, number, 0) * inlet.radii.len() as f64;
+        let pick = uniform_at(inlet.seed, number, 0) * inlet.radii.len() as f64;
         let radius = inlet.radii[(pick as usize).min(inlet.radii.len() - 1)];
         (0..TRIES).find_map(|attempt| {
             let coordinate = |axis: usize| {
                 let (low, high) = (inlet.low.component(axis), inlet.high.component(axis));
-                let share = uniform(inlet.seed, number, 1 + attempt * D::N as u64 + axis as u64);
+                let share = uniform_at(inlet.seed, number, 1 + attempt * D::N as u64 + axis as u64);
                 low + radius + share * (high - low - 2.0 * radius)
             };
             let at = (0..D::N).fold(D::Vec::ZERO, |at, axis| at + D::Vec::along(axis, coordinate(axis)));
             let of_grains = near.has_place(at, radius);
             let of_walls = self.walls.iter().enumerate().filter(|(_, wall)| !wall.open).all(|(k, wall)| {
-                let point = self.movers.poses.get(k).map_or(at, |pose| pose.within_wall(at));
+                let point = self.moving_walls.poses.get(k).map_or(at, |pose| pose.within_wall(at));
                 wall.shape.distance(point).0 >= radius
             });
             (of_grains && of_walls).then(|| Grain::at(at, radius, inlet.material).moving(inlet.velocity))

@@ -2,10 +2,11 @@
 //! ordinary pairs, so that a scene without a cell has none of it.
 
 use super::{Cell, Shift};
-use crate::contacts::Receipt;
-use crate::kernel::{Kernel, Owed, Pair, View, push_of};
+use crate::kinematics::{Pair, push_of};
 use crate::law::ContactLaw;
-use crate::lists::{BlockList, spare};
+use crate::lists::{BlockList, Receipt, spare};
+use crate::pass::{Kernel, Owed};
+use crate::view::View;
 use granular_core::search::Neighbours;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored, Vector};
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! What a cell shows: lengths, strain, stress and density, computed when asked for.
 
 use super::Matrix;
-use crate::contacts::Partner;
+use crate::contact::Partner;
 use crate::dem::Dem;
 use granular_core::{Dim, FieldSink, Shown, ShownAs};
 

@@ -1,7 +1,7 @@
 //! What a snapshot holds of a cell.
 
 use super::{Cell, CellControl, Control, Matrix};
-use crate::grains::check_finite;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Section, SnapshotError};
 
 impl<D: Dim> Cell<D> {
@@ -28,22 +28,22 @@ impl<D: Dim> Cell<D> {
         let matrix = |name: &str| -> Result<Matrix<D>, SnapshotError> {
             let columns: Vec<D::Vec> = from.array_of(name, 3)?;
             let matrix = Matrix { columns: [columns[0], columns[1], columns[2]] };
-            check_finite(name, matrix.is_finite())?;
+            check_entry(name, matrix.is_finite())?;
             Ok(matrix)
         };
         self.edges = matrix("cell edges")?;
         self.gradient = matrix("cell gradient")?;
         self.last_gradient = matrix("cell gradient of the last step")?;
         self.strain = matrix("cell strain")?;
-        check_finite("cell edges", self.edges.determinant() > 0.0)?;
+        check_entry("cell edges", self.edges.determinant() > 0.0)?;
         let both: Vec<f64> = from.array_of("cell work and drift", 2)?;
-        check_finite("cell work and drift", both.iter().all(|value| value.is_finite()))?;
+        check_entry("cell work and drift", both.iter().all(|value| value.is_finite()))?;
         (self.work, self.drift) = (both[0], both[1]);
         let kinds: Vec<u8> = from.array_of("cell controls", 9)?;
         let values: Vec<f64> = from.array_of("cell control values", 9)?;
-        check_finite("cell control values", values.iter().all(|value| value.is_finite()))?;
+        check_entry("cell control values", values.iter().all(|value| value.is_finite()))?;
         let servo: Vec<f64> = from.array_of("cell response and modulus", 2)?;
-        check_finite(
+        check_entry(
             "cell response and modulus",
             servo.iter().all(|value| value.is_finite() && *value >= 0.0),
         )?;

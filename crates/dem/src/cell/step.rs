@@ -3,8 +3,8 @@
 use super::images::Moved;
 use super::{Cell, CellControl, Matrix, Shift, motion};
 use crate::dem::{Dem, view_of};
-use crate::kernel::View;
 use crate::material::{PairProperties, SetupError};
+use crate::view::View;
 use granular_core::{Dim, Linear, StepError, Vector};
 
 /// The narrowest cell over the reach of a pair: no grain may see an image of itself, and no image
@@ -119,16 +119,16 @@ impl<D: Dim> Dem<D> {
             motion::open_step(&mut self.grains, cell, self.blocks, steps, &mut self.speeds);
             self.load_in_cell(dt, largest)?;
         }
-        self.movers.place(self.clock.time());
+        self.moving_walls.place(self.clock.time());
         Ok(())
     }
 
     /// One step between its two halves.
     fn load_in_cell(&mut self, dt: f64, largest: f64) -> Result<(), StepError> {
         let mut own = crate::motion::fastest(&self.speeds) * dt;
-        if !self.movers.is_empty() {
-            own = own.max(self.movers.fastest(dt) * dt);
-            self.movers.place_in_step(self.clock.time(), dt);
+        if !self.moving_walls.is_empty() {
+            own = own.max(self.moving_walls.fastest(dt) * dt);
+            self.moving_walls.place_in_step(self.clock.time(), dt);
         }
         let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
         let flow = 0.5 * cell.gradient.norm() * (2.0 * largest + self.reach) * dt;
@@ -148,7 +148,7 @@ impl<D: Dim> Dem<D> {
         }
         self.push_in_cell(dt, stride);
         self.last_dt = dt;
-        if !self.movers.is_empty() {
+        if !self.moving_walls.is_empty() {
             self.move_walls(dt);
         }
         let (losses, trouble) = self.pairs.outcome();
@@ -162,7 +162,7 @@ impl<D: Dim> Dem<D> {
     fn push_in_cell(&mut self, dt: f64, margin: f64) {
         let mut force = std::mem::take(&mut self.grains.acceleration);
         let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let seen = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
+        let seen = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
         let started = self.cell.as_deref().map(|cell| cell.start_velocity.as_slice());
         let view = View {
             velocity: &self.grains.middle_velocity,

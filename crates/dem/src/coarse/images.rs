@@ -1,9 +1,9 @@
 //! Grains and branches as a grid sees them: in a periodic cell each with all images that reach into it.
 
 use super::grid::CoarseGrid;
-use crate::below::corners;
 use crate::cell::Cell;
 use crate::dem::Dem;
+use crate::walls::corners;
 use granular_core::{Dim, Linear, Vector};
 
 /// A grain, or an image of one.

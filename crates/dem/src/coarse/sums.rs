@@ -4,7 +4,7 @@
 use super::grid::CoarseGrid;
 use super::images::{Images, Seen};
 use super::spline::{Weights, gauss, touches};
-use crate::contacts::Partner;
+use crate::contact::Partner;
 use crate::dem::Dem;
 use granular_core::glam::DVec3;
 use granular_core::{Blocks, Dim, SymmetricTensor, Vector};

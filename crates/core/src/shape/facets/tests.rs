@@ -1,6 +1,6 @@
 use super::*;
-use granular_core::D3;
-use granular_core::glam::DVec3;
+use crate::dim::D3;
+use glam::DVec3;
 
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -37,7 +37,7 @@ fn the_tree_finds_what_a_search_of_all_parts_finds() {
             std::array::from_fn::<_, 3, _>(|_| at + point(&mut state) * 0.1)
         })
         .collect();
-    let facets = Facets::<D3>::new("mesh", corners, 3).unwrap();
+    let facets = Facets::<D3>::new(corners, 3).unwrap();
     for _ in 0..100 {
         let x = point(&mut state);
         let nearest =
@@ -52,11 +52,11 @@ fn the_tree_finds_what_a_search_of_all_parts_finds() {
 
 #[test]
 fn what_is_no_surface_is_refused() {
-    assert!(Facets::<D3>::new("none", vec![], 3).is_err());
-    assert!(Facets::<D3>::new("point", vec![DVec3::ONE; 3], 3).is_err());
-    assert!(Facets::<D3>::new("nan", vec![DVec3::X, DVec3::NAN, DVec3::Y], 3).is_err());
-    assert!(Facets::<D3>::balls("flat", &[(DVec3::ZERO, 0.0)]).is_err());
+    assert!(Facets::<D3>::new(vec![], 3).is_err());
+    assert!(Facets::<D3>::new(vec![DVec3::ONE; 3], 3).is_err());
+    assert!(Facets::<D3>::new(vec![DVec3::X, DVec3::NAN, DVec3::Y], 3).is_err());
+    assert!(Facets::<D3>::balls(&[(DVec3::ZERO, 0.0)]).is_err());
     // A sliver is not: scanned meshes have some.
-    let sliver = Facets::<D3>::new("sliver", vec![DVec3::ZERO, DVec3::X, DVec3::X * 0.5], 3).unwrap();
+    let sliver = Facets::<D3>::new(vec![DVec3::ZERO, DVec3::X, DVec3::X * 0.5], 3).unwrap();
     assert!((sliver.distance(DVec3::new(0.7, 0.0, 2.0)).0 - 2.0).abs() < 1e-15);
 }

@@ -1,33 +1,38 @@
 //! Where a moving wall is and how its surface moves.
 //!
-//! Shapes stay as they were given; the point of a grain is taken into the frame of the wall instead, so that
+//! Shapes stay as they were given; a point of the scene is taken into the frame of the wall instead, so that
 //! no tree of facets is ever moved and a wall that returns is where it was, to the last bit.
 
-use granular_core::{Dim, Linear};
+use crate::dim::{Dim, Linear};
 
 /// A rigid motion of a wall at one instant: turned about a point, then shifted.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pose<D: Dim> {
-    pub(crate) shift: D::Vec,
-    pub(crate) about: D::Vec,
+pub struct Pose<D: Dim> {
+    /// Shift \[m\].
+    pub shift: D::Vec,
+    /// Point about which the wall is turned before it is shifted \[m\].
+    pub about: D::Vec,
     /// Unit spin about which the wall is turned; any value when it is not.
-    pub(crate) axis: D::Spin,
-    pub(crate) angle: Turned,
-    pub(crate) rate: Rate<D>,
+    pub axis: D::Spin,
+    /// Angle by which it is turned.
+    pub angle: Turned,
+    /// How it moves.
+    pub rate: Rate<D>,
     /// The rate at the start of the step, with which the wall moves from the middle of the last step to the
     /// middle of this one.
-    pub(crate) start_rate: Rate<D>,
+    pub start_rate: Rate<D>,
 }
 
 /// Sine, and one less the cosine, of an angle; the latter from the half angle, so that a small turn is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Turned {
+pub struct Turned {
     sine: f64,
     versine: f64,
 }
 
 impl Turned {
-    pub(crate) fn by(angle: f64) -> Self {
+    /// By an angle \[rad\].
+    pub fn by(angle: f64) -> Self {
         let half = (0.5 * angle).sin();
         Self { sine: angle.sin(), versine: 2.0 * half * half }
     }
@@ -35,9 +40,11 @@ impl Turned {
 
 /// Velocity of the point about which a wall turns, and the spin.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rate<D: Dim> {
-    pub(crate) velocity: D::Vec,
-    pub(crate) spin: D::Spin,
+pub struct Rate<D: Dim> {
+    /// Velocity of that point \[m/s\].
+    pub velocity: D::Vec,
+    /// Angular velocity \[rad/s\].
+    pub spin: D::Spin,
 }
 
 impl<D: Dim> Default for Pose<D> {
@@ -68,25 +75,25 @@ impl<D: Dim> Pose<D> {
 
     /// A point in the frame of the wall.
     #[inline(always)]
-    pub(crate) fn within_wall(&self, point: D::Vec) -> D::Vec {
+    pub fn within_wall(&self, point: D::Vec) -> D::Vec {
         let shifted = point - self.shift;
         if self.is_turned() { self.about + self.turned(shifted - self.about, -1.0) } else { shifted }
     }
 
     /// Where a point of the frame of the wall is in the scene.
-    pub(crate) fn out_of_wall_at(&self, point: D::Vec) -> D::Vec {
+    pub fn out_of_wall_at(&self, point: D::Vec) -> D::Vec {
         self.about + self.out_of_wall(point - self.about) + self.shift
     }
 
     /// A direction of the frame of the wall in that of the scene.
     #[inline(always)]
-    pub(crate) fn out_of_wall(&self, direction: D::Vec) -> D::Vec {
+    pub fn out_of_wall(&self, direction: D::Vec) -> D::Vec {
         if self.is_turned() { self.turned(direction, 1.0) } else { direction }
     }
 
     /// Velocity of the wall at a point of the scene, at the middle of the step and at its start.
     #[inline(always)]
-    pub(crate) fn velocities(&self, point: D::Vec) -> (D::Vec, D::Vec) {
+    pub fn velocities(&self, point: D::Vec) -> (D::Vec, D::Vec) {
         let arm = point - self.about - self.shift;
         let of = |rate: &Rate<D>| rate.velocity + D::turn(rate.spin, arm);
         (of(&self.rate), of(&self.start_rate))
@@ -96,8 +103,8 @@ impl<D: Dim> Pose<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::glam::{DQuat, DVec2, DVec3};
-    use granular_core::{D2, D3};
+    use crate::dim::{D2, D3};
+    use glam::{DQuat, DVec2, DVec3};
 
     #[test]
     fn points_go_into_the_frame_of_a_wall_and_directions_come_back() {

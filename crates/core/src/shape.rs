@@ -1,12 +1,24 @@
-//! Walls: planes, segments and boxes, each with its own material.
+//! Shapes: surfaces that are touched, and [solid shapes](solid) that fill space. They know no solver: grains, continua and
+//! fluids meet the same ones.
+//!
+//! | | is | asks |
+//! |---|---|---|
+//! | [`Shape`] | a surface without or with an inside: planes, segments, blocks, tubes, circles, meshes | distance and normal |
+//! | [`SolidShape`] | what fills space: balls, blocks, polygons, prisms, images | what it contains, where a ray enters it |
+//!
+//! A [`Shape`] with an inside (a half-space, a block, balls) is a [`SolidShape`] too, and a [`Ball`] or [`Block`] has a [`Shape`].
 
-use crate::facets::Facets;
-use crate::material::{MaterialId, SetupError};
-use crate::moving::WallMotion;
-use granular_core::{Dim, Linear, Vector};
+mod facets;
+pub mod solid;
+
+pub use facets::Facets;
+pub use solid::{Ball, Block, Extruded, Polygon, ShapeError, SolidShape};
+
+use crate::dim::{Dim, Linear, Vector};
+use crate::setup_error::SetupError;
 use std::sync::Arc;
 
-/// The surface of a wall.
+/// A surface that bodies touch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<D: Dim> {
     /// A half-space: grains are on the side to which the normal points.
@@ -126,210 +138,155 @@ impl<D: Dim> Shape<D> {
     }
 }
 
-/// A wall, at rest unless it has a motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Wall<D: Dim> {
-    /// Name, unique in a scene.
-    pub name: String,
-    /// Surface.
-    pub shape: Shape<D>,
-    /// Material.
-    pub material: MaterialId,
-    /// Whether it is out of the way: an open gate.
-    pub open: bool,
-    /// How it moves; the shape is where it begins.
-    pub motion: Option<WallMotion<D>>,
-    /// Whether a moving wall waits where it is until [`Dem::set_moving`](crate::Dem::set_moving).
-    pub held: bool,
-}
-
-impl<D: Dim> Wall<D> {
-    /// A plane through `point` \[m\]; grains are on the side to which `normal` points (any length).
+impl<D: Dim> Shape<D> {
+    /// A plane through `point` \[m\]; bodies are on the side to which `normal` points (any length).
     ///
     /// # Errors
     /// When the normal has no direction.
-    pub fn plane(
-        name: &str,
-        point: D::Vec,
-        normal: D::Vec,
-        material: MaterialId,
-    ) -> Result<Self, SetupError> {
+    pub fn plane(point: D::Vec, normal: D::Vec) -> Result<Self, SetupError> {
         let length = normal.length();
         if !(length.is_finite() && length > 0.0 && point.is_finite()) {
-            return Err(SetupError::new(format!("normal of wall `{name}`"), length, "a finite direction"));
+            return Err(SetupError::new("normal", length, "a finite direction"));
         }
-        Ok(Self::of(name, Shape::Plane { point, normal: normal * (1.0 / length) }, material))
+        Ok(Self::Plane { point, normal: normal * (1.0 / length) })
     }
 
     /// A segment between two points \[m\].
     ///
     /// # Errors
     /// When the points coincide or are not finite.
-    pub fn segment(name: &str, from: D::Vec, to: D::Vec, material: MaterialId) -> Result<Self, SetupError> {
+    pub fn segment(from: D::Vec, to: D::Vec) -> Result<Self, SetupError> {
         let length = (to - from).length();
         if !(length.is_finite() && length > 0.0) {
-            return Err(SetupError::new(format!("length of wall `{name}`"), length, "positive and finite"));
+            return Err(SetupError::new("length", length, "positive and finite"));
         }
-        Ok(Self::of(name, Shape::Segment { from, to }, material))
+        Ok(Self::Segment { from, to })
     }
 
     /// A solid block between two corners \[m\].
     ///
     /// # Errors
     /// When the upper corner is below the lower one, or a corner is not finite.
-    pub fn block(name: &str, low: D::Vec, high: D::Vec, material: MaterialId) -> Result<Self, SetupError> {
+    pub fn block(low: D::Vec, high: D::Vec) -> Result<Self, SetupError> {
         let extent = (0..D::N).map(|axis| (high - low).component(axis)).fold(f64::INFINITY, f64::min);
         if !(extent >= 0.0 && low.is_finite() && high.is_finite()) {
-            return Err(SetupError::new(
-                format!("extent of wall `{name}`"),
-                extent,
-                "zero or more, and finite",
-            ));
+            return Err(SetupError::new("extent", extent, "zero or more, and finite"));
         }
-        Ok(Self::of(name, Shape::Block { low, high }, material))
+        Ok(Self::Block { low, high })
     }
 
-    /// The curved surface of a cylinder between the middles of its ends \[m\], with a radius \[m\]; open at both ends
-    /// and touched from both sides.
+    /// The curved surface of a cylinder between the middles of its ends \[m\], with a radius \[m\].
     ///
     /// # Errors
     /// When the ends coincide, the radius is not positive, or something is not finite.
-    pub fn tube(
-        name: &str,
-        from: D::Vec,
-        to: D::Vec,
-        radius: f64,
-        material: MaterialId,
-    ) -> Result<Self, SetupError> {
+    pub fn tube(from: D::Vec, to: D::Vec, radius: f64) -> Result<Self, SetupError> {
         for (what, value) in [("length", (to - from).length()), ("radius", radius)] {
             if !(value.is_finite() && value > 0.0) {
-                let what = format!("{what} of wall `{name}`");
                 return Err(SetupError::new(what, value, "positive and finite"));
             }
         }
-        Ok(Self::of(name, Shape::Tube { from, to, radius }, material))
+        Ok(Self::Tube { from, to, radius })
     }
 
-    /// A circle about a centre \[m\] with a radius \[m\], touched from inside and outside; in space the shell of a sphere.
+    /// A circle about a centre \[m\] with a radius \[m\]; in space the shell of a sphere.
     ///
     /// # Errors
     /// When the centre is not finite or the radius not positive.
-    pub fn circle(name: &str, centre: D::Vec, radius: f64, material: MaterialId) -> Result<Self, SetupError> {
+    pub fn circle(centre: D::Vec, radius: f64) -> Result<Self, SetupError> {
         if !(radius.is_finite() && radius > 0.0 && centre.is_finite()) {
-            let what = format!("radius of wall `{name}`");
-            return Err(SetupError::new(what, radius, "positive and finite, about a finite centre"));
+            return Err(SetupError::new("radius", radius, "positive and finite, about a finite centre"));
         }
-        Ok(Self::of(name, Shape::Circle { centre, radius }, material))
+        Ok(Self::Circle { centre, radius })
     }
 
-    /// A chain of segments through some points \[m\], touched from both sides and at its ends; `closed` joins the
-    /// last point to the first.
+    /// A chain of segments through some points \[m\]; `closed` joins the last point to the first.
     ///
     /// # Errors
     /// When there are fewer than two points, one is not finite, or two neighbours coincide.
-    pub fn chain(
-        name: &str,
-        points: &[D::Vec],
-        closed: bool,
-        material: MaterialId,
-    ) -> Result<Self, SetupError> {
+    pub fn chain(points: &[D::Vec], closed: bool) -> Result<Self, SetupError> {
         let closing = if closed { points.first().zip(points.last()) } else { None };
         let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
         let corners: Vec<D::Vec> =
             segments.chain(closing.map(|(&first, &last)| [last, first])).flatten().collect();
-        let facets = Facets::new(name, corners, 2)?;
-        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+        Ok(Self::Facets(Arc::new(Facets::new(corners, 2)?)))
     }
 
-    /// A mesh of triangles, three corners \[m\] each, touched from both sides, at its faces, edges and corners. It
-    /// need not be closed and its triangles need not share corners. (In the plane a triangle is a filled one.)
+    /// A mesh of triangles, three corners \[m\] each. It need not be closed and its triangles need not share corners.
+    /// (In the plane a triangle is a filled one.)
     ///
     /// # Errors
     /// When there is no triangle, corners are left over, one is not finite, or those of a triangle coincide.
-    pub fn triangles(name: &str, corners: Vec<D::Vec>, material: MaterialId) -> Result<Self, SetupError> {
-        if !corners.len().is_multiple_of(3) {
-            let what = format!("number of corners of wall `{name}`");
-            return Err(SetupError::new(what, corners.len() as f64, "three for each triangle"));
-        }
-        let facets = Facets::new(name, corners, 3)?;
-        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    pub fn triangles(corners: Vec<D::Vec>) -> Result<Self, SetupError> {
+        Ok(Self::Facets(Arc::new(Facets::new(corners, 3)?)))
     }
 
-    /// A wall of grains that are held: centre \[m\] and radius \[m\] of each. They are not integrated; like any
-    /// wall they may move all together.
+    /// Balls in fixed places: centre \[m\] and radius \[m\] of each.
     ///
     /// # Errors
-    /// When there is none, or one has no finite position and positive radius.
-    pub fn held_grains(
-        name: &str,
-        grains: &[(D::Vec, f64)],
-        material: MaterialId,
-    ) -> Result<Self, SetupError> {
-        let facets = Facets::balls(name, grains)?;
-        Ok(Self::of(name, Shape::Facets(Arc::new(facets)), material))
+    /// When there is none, or one has no finite centre and positive radius.
+    pub fn balls(balls: &[(D::Vec, f64)]) -> Result<Self, SetupError> {
+        Ok(Self::Facets(Arc::new(Facets::balls(balls)?)))
     }
 
-    /// The same wall with a motion; its shape is where it begins.
-    pub fn moving(self, motion: WallMotion<D>) -> Self {
-        Self { motion: Some(motion), ..self }
-    }
-
-    fn of(name: &str, shape: Shape<D>, material: MaterialId) -> Self {
-        Self { name: name.to_owned(), shape, material, open: false, motion: None, held: false }
+    /// Number of parts of which it is made: one, but for facets.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Facets(facets) => facets.len(),
+            _ => 1,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::glam::{DVec2, DVec3};
-    use granular_core::{D2, D3};
+    use crate::dim::{D2, D3};
+    use glam::{DVec2, DVec3};
 
     #[test]
     fn distances_follow_the_nearest_point() {
-        let material = MaterialId(0);
-        let segment = Wall::<D2>::segment("s", DVec2::ZERO, DVec2::X, material).unwrap();
-        assert_eq!(segment.shape.distance(DVec2::new(0.3, -2.0)), (2.0, -DVec2::Y));
-        assert_eq!(segment.shape.distance(DVec2::new(4.0, 4.0)).0, 5.0);
-        let block = Wall::<D2>::block("b", DVec2::ZERO, DVec2::ONE, material).unwrap();
-        assert_eq!(block.shape.distance(DVec2::new(1.5, 0.5)), (0.5, DVec2::X));
-        let plane = Wall::<D2>::plane("p", DVec2::ZERO, DVec2::new(0.0, 7.0), material).unwrap();
-        assert_eq!(plane.shape.distance(DVec2::new(3.0, -0.5)), (-0.5, DVec2::Y));
-        assert!(Wall::<D2>::plane("p", DVec2::ZERO, DVec2::ZERO, material).is_err());
-        assert!(Wall::<D2>::block("b", DVec2::ONE, DVec2::ZERO, material).is_err());
+        let segment = Shape::<D2>::segment(DVec2::ZERO, DVec2::X).unwrap();
+        assert_eq!(segment.distance(DVec2::new(0.3, -2.0)), (2.0, -DVec2::Y));
+        assert_eq!(segment.distance(DVec2::new(4.0, 4.0)).0, 5.0);
+        let block = Shape::<D2>::block(DVec2::ZERO, DVec2::ONE).unwrap();
+        assert_eq!(block.distance(DVec2::new(1.5, 0.5)), (0.5, DVec2::X));
+        let plane = Shape::<D2>::plane(DVec2::ZERO, DVec2::new(0.0, 7.0)).unwrap();
+        assert_eq!(plane.distance(DVec2::new(3.0, -0.5)), (-0.5, DVec2::Y));
+        assert!(Shape::<D2>::plane(DVec2::ZERO, DVec2::ZERO).is_err());
+        assert!(Shape::<D2>::block(DVec2::ONE, DVec2::ZERO).is_err());
     }
 
     #[test]
     fn a_circle_is_touched_inside_and_outside() {
-        let drum = Wall::<D2>::circle("drum", DVec2::new(1.0, 2.0), 3.0, MaterialId(0)).unwrap().shape;
+        let drum = Shape::<D2>::circle(DVec2::new(1.0, 2.0), 3.0).unwrap();
         assert_eq!(drum.distance(DVec2::new(3.5, 2.0)), (0.5, -DVec2::X));
         assert_eq!(drum.distance(DVec2::new(1.0, 6.0)), (1.0, DVec2::Y));
         assert_eq!(drum.distance(DVec2::new(1.0, 2.0)), (3.0, DVec2::ZERO));
         assert_eq!(drum.bounds(), Some((DVec2::new(-2.0, -1.0), DVec2::new(4.0, 5.0))));
-        let shell = Wall::<D3>::circle("s", DVec3::ZERO, 1.0, MaterialId(0)).unwrap().shape;
+        let shell = Shape::<D3>::circle(DVec3::ZERO, 1.0).unwrap();
         assert_eq!(shell.distance(DVec3::new(0.0, 0.0, -0.75)), (0.25, DVec3::Z));
-        assert!(Wall::<D2>::circle("s", DVec2::ZERO, 0.0, MaterialId(0)).is_err());
-        assert!(Wall::<D2>::circle("s", DVec2::NAN, 1.0, MaterialId(0)).is_err());
+        assert!(Shape::<D2>::circle(DVec2::ZERO, 0.0).is_err());
+        assert!(Shape::<D2>::circle(DVec2::NAN, 1.0).is_err());
     }
 
     #[test]
     fn bounds_hold_the_whole_shape() {
-        let tube = Wall::<D3>::tube("t", DVec3::ZERO, DVec3::X * 4.0, 2.0, MaterialId(0)).unwrap().shape;
+        let tube = Shape::<D3>::tube(DVec3::ZERO, DVec3::X * 4.0, 2.0).unwrap();
         assert_eq!(tube.bounds(), Some((DVec3::new(0.0, -2.0, -2.0), DVec3::new(4.0, 2.0, 2.0))));
         assert_eq!(tube.reference(), DVec3::X * 2.0);
         let chain = [DVec2::new(1.0, 5.0), DVec2::new(-1.0, 0.0), DVec2::new(0.0, 2.0)];
-        let chain = Wall::<D2>::chain("c", &chain, false, MaterialId(0)).unwrap().shape;
+        let chain = Shape::<D2>::chain(&chain, false).unwrap();
         assert_eq!(chain.bounds(), Some((DVec2::new(-1.0, 0.0), DVec2::new(1.0, 5.0))));
-        let held = Wall::<D2>::held_grains("h", &[(DVec2::ONE, 0.5)], MaterialId(0)).unwrap().shape;
+        let held = Shape::<D2>::balls(&[(DVec2::ONE, 0.5)]).unwrap();
         assert_eq!(held.bounds(), Some((DVec2::splat(0.5), DVec2::splat(1.5))));
-        let plane = Wall::<D2>::plane("p", DVec2::ONE, DVec2::Y, MaterialId(0)).unwrap().shape;
+        let plane = Shape::<D2>::plane(DVec2::ONE, DVec2::Y).unwrap();
         assert_eq!((plane.bounds(), plane.reference()), (None, DVec2::ONE));
     }
 
     #[test]
     fn a_tube_is_touched_inside_outside_and_at_its_rims() {
         let (from, to) = (DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 4.0));
-        let tube = Wall::<D3>::tube("t", from, to, 2.0, MaterialId(0)).unwrap().shape;
+        let tube = Shape::<D3>::tube(from, to, 2.0).unwrap();
         let near = |at: [f64; 3], distance: f64, normal: [f64; 3]| {
             let (found, direction) = tube.distance(at.into());
             assert!((found - distance).abs() < 1e-14, "{at:?}: {found}");
@@ -341,7 +298,7 @@ mod tests {
         near([3.0, 1.0, -0.5], 0.5, [0.0, 0.0, -1.0]);
         near([3.3, 1.0, 4.4], 0.5, [0.6, 0.0, 0.8]);
         near([1.0, 1.0, 2.0], 2.0, [0.0; 3]);
-        assert!(Wall::<D3>::tube("t", from, from, 2.0, MaterialId(0)).is_err());
-        assert!(Wall::<D3>::tube("t", from, to, 0.0, MaterialId(0)).is_err());
+        assert!(Shape::<D3>::tube(from, from, 2.0).is_err());
+        assert!(Shape::<D3>::tube(from, to, 0.0).is_err());
     }
 }

@@ -3,8 +3,8 @@
 //! All parts of a surface have as many corners: one (a ball about it), two or three. A tree of boxes finds the
 //! parts near a point.
 
-use crate::material::SetupError;
-use granular_core::{Dim, Linear, Vector};
+use crate::dim::{Dim, Linear, Vector};
+use crate::setup_error::SetupError;
 
 /// Parts in one leaf of the tree.
 const LEAF: usize = 4;
@@ -42,31 +42,38 @@ impl<D: Dim> Node<D> {
 }
 
 impl<D: Dim> Facets<D> {
-    /// Parts with `each` corners (2 or 3).
+    /// Parts with `each` corners \[m\]: 2 for segments, 3 for triangles.
     ///
     /// # Errors
-    /// When there is none, a corner is not finite, or a part has no extent.
-    pub(crate) fn new(wall: &str, corners: Vec<D::Vec>, each: usize) -> Result<Self, SetupError> {
+    /// When there is none, corners are left over, one is not finite, or a part has no extent.
+    ///
+    /// # Panics
+    /// When `each` is neither 2 nor 3.
+    pub fn new(corners: Vec<D::Vec>, each: usize) -> Result<Self, SetupError> {
+        assert!((2..=3).contains(&each), "a part is a segment or a triangle");
+        if !corners.len().is_multiple_of(each) {
+            let allowed = if each == 3 { "three for each triangle" } else { "two for each segment" };
+            return Err(SetupError::new("number of corners", corners.len() as f64, allowed));
+        }
         let facets = Self { corners, each, radii: Vec::new(), nodes: Vec::new(), order: Vec::new() };
         for part in 0..facets.len() {
             let extent = facets.extent(part);
             // A sliver has no inside to speak of, but its edges are as good as any.
             if !(extent.is_finite() && extent > 0.0) {
-                let what = format!("extent of part {part} of wall `{wall}`");
-                return Err(SetupError::new(what, extent, "positive and finite"));
+                return Err(SetupError::new(format!("extent of part {part}"), extent, "positive and finite"));
             }
         }
-        facets.grown(wall)
+        facets.grown()
     }
 
-    /// Balls that are held.
+    /// Balls, each with its centre and radius \[m\].
     ///
     /// # Errors
     /// When there is none, or one has no finite position and positive radius.
-    pub(crate) fn balls(wall: &str, balls: &[(D::Vec, f64)]) -> Result<Self, SetupError> {
+    pub fn balls(balls: &[(D::Vec, f64)]) -> Result<Self, SetupError> {
         for (part, (centre, radius)) in balls.iter().enumerate() {
             if !(centre.is_finite() && radius.is_finite() && *radius > 0.0) {
-                let what = format!("radius of grain {part} of wall `{wall}`");
+                let what = format!("radius of grain {part}");
                 return Err(SetupError::new(what, *radius, "positive and finite, at a finite position"));
             }
         }
@@ -77,7 +84,7 @@ impl<D: Dim> Facets<D> {
             nodes: Vec::new(),
             order: Vec::new(),
         }
-        .grown(wall)
+        .grown()
     }
 
     /// Number of parts.
@@ -106,7 +113,7 @@ impl<D: Dim> Facets<D> {
     }
 
     /// Whether parts are balls, each of which is a body of its own.
-    pub(crate) fn are_balls(&self) -> bool {
+    pub fn are_balls(&self) -> bool {
         !self.radii.is_empty()
     }
 
@@ -121,7 +128,7 @@ impl<D: Dim> Facets<D> {
 
     /// Distance of a point from a part \[m\] and the unit normal from the part to the point.
     #[inline]
-    pub(crate) fn distance_to(&self, part: usize, point: D::Vec) -> (f64, D::Vec) {
+    pub fn distance_to(&self, part: usize, point: D::Vec) -> (f64, D::Vec) {
         let arm = point - nearest_point::<D>(self.corners(part), point);
         let length = arm.length();
         let normal = if length > 0.0 { arm * (1.0 / length) } else { D::Vec::ZERO };
@@ -149,7 +156,7 @@ impl<D: Dim> Facets<D> {
     }
 
     /// Calls `visit` for every part whose box is nearer to a point than `reach` \[m\].
-    pub(crate) fn visit_near(&self, point: D::Vec, reach: f64, mut visit: impl FnMut(u32)) {
+    pub fn visit_near(&self, point: D::Vec, reach: f64, mut visit: impl FnMut(u32)) {
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
             if node.squared_distance(point) >= reach * reach {
@@ -165,11 +172,10 @@ impl<D: Dim> Facets<D> {
         &self.order[node.from as usize..(node.from + node.count) as usize]
     }
 
-    fn grown(mut self, wall: &str) -> Result<Self, SetupError> {
+    fn grown(mut self) -> Result<Self, SetupError> {
         let count = self.len();
         if count == 0 || u32::try_from(count).is_err() {
-            let what = format!("number of parts of wall `{wall}`");
-            return Err(SetupError::new(what, count as f64, "at least one, and below 2^32"));
+            return Err(SetupError::new("number of parts", count as f64, "at least one, and below 2^32"));
         }
         let mut order: Vec<u32> = (0..count as u32).collect();
         self.grow(&mut order, 0);

@@ -1,8 +1,8 @@
 //! Numbers of walls beside the forces on them: where they are, how they move, torques, pressures.
 
-use crate::contacts::Partner;
+use crate::contact::Partner;
 use crate::dem::Dem;
-use crate::moving::WallMotion;
+use granular_core::walls::WallMotion;
 use granular_core::{Dim, FieldSink, Linear, Shown, ShownAs, Spin, Vector};
 
 /// A number of one wall.
@@ -52,7 +52,7 @@ impl<D: Dim> Dem<D> {
     /// When there is no wall of this index.
     pub fn wall_reference(&self, wall: usize) -> D::Vec {
         let given = self.walls[wall].shape.reference();
-        self.movers.poses.get(wall).map_or(given, |pose| pose.out_of_wall_at(given))
+        self.moving_walls.poses.get(wall).map_or(given, |pose| pose.out_of_wall_at(given))
     }
 
     /// Velocity \[m/s\] of the [reference point](crate::Shape::reference) of a wall.
@@ -61,7 +61,7 @@ impl<D: Dim> Dem<D> {
     /// When there is no wall of this index.
     pub fn wall_velocity(&self, wall: usize) -> D::Vec {
         let at = self.wall_reference(wall);
-        self.movers.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.velocities(at).0)
+        self.moving_walls.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.velocities(at).0)
     }
 
     /// Torque of the grains on each wall \[N m; N in the plane\]: about its axis where it turns, else about its
@@ -81,7 +81,7 @@ impl<D: Dim> Dem<D> {
     }
 
     fn wall_named(&self) -> impl Iterator<Item = (usize, Named)> + '_ {
-        let moving: Vec<usize> = self.movers.walls().collect();
+        let moving: Vec<usize> = self.moving_walls.walls().collect();
         self.walls.iter().enumerate().flat_map(move |(wall, description)| {
             let of = &description.name;
             let mut list = Vec::new();
@@ -105,7 +105,7 @@ impl<D: Dim> Dem<D> {
             if matches!(description.motion, Some(WallMotion::Turning { .. })) {
                 add(format!("angle_of_{of}"), "rad", ANGLE, Kind::Angle);
             }
-            if self.movers.pressed_area(wall).is_some() {
+            if self.moving_walls.pressed_area(wall).is_some() {
                 let unit = if D::N == 2 { "m" } else { "m^2" };
                 add(format!("area_of_{of}"), unit, AREA, Kind::Area);
                 add(format!("pressure_on_{of}"), "Pa", PRESSURE, Kind::Pressure);
@@ -135,14 +135,14 @@ impl<D: Dim> Dem<D> {
                     (self.wall_reference(wall) - self.walls[wall].shape.reference()).component(axis)
                 }
                 Kind::Velocity(axis) => self.wall_velocity(wall).component(axis),
-                Kind::Angle => self.movers.angle(wall, self.clock.time()).unwrap_or(f64::NAN),
+                Kind::Angle => self.moving_walls.angle(wall, self.clock.time()).unwrap_or(f64::NAN),
                 Kind::Torque(axis) => {
                     torques.get_or_insert_with(|| self.wall_torques())[wall].components()[axis]
                 }
-                Kind::Area => self.movers.pressed_area(wall).unwrap_or(f64::NAN),
+                Kind::Area => self.moving_walls.pressed_area(wall).unwrap_or(f64::NAN),
                 Kind::Pressure => {
                     let force = forces.get_or_insert_with(|| self.wall_forces())[wall];
-                    let area = self.movers.pressed_area(wall).unwrap_or(f64::NAN);
+                    let area = self.moving_walls.pressed_area(wall).unwrap_or(f64::NAN);
                     match self.walls[wall].motion {
                         Some(WallMotion::Servo(servo)) => -force.dot(servo.direction) / area,
                         _ => f64::NAN,

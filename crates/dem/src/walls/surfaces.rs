@@ -10,15 +10,20 @@
 //! at the nearest direction takes it over. Together with the turning of springs with the normal
 //! ([`Dim::follow`]) this carries history across joints.
 
-use crate::Partner;
-use crate::contacts::Contact;
-use crate::facets::Facets;
-use crate::kernel::{Kernel, Surface, View, contact_of, meet_surface};
+use super::contact::{Surface, meet_surface};
+use crate::contact::Contact;
+use crate::contact::Partner;
+use crate::contact::contact_of;
 use crate::law::{ContactLaw, Meeting};
 use crate::lists::Places;
-use crate::moving::Reaction;
-use crate::pose::Pose;
-use crate::wall::{Shape, Wall};
+use crate::pass::Kernel;
+use crate::view::View;
+use crate::walls::Wall;
+use granular_core::Shape;
+use granular_core::shape::Facets;
+use granular_core::snapshot::check_entry;
+use granular_core::walls::Pose;
+use granular_core::walls::Reaction;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored};
 use std::ops::Range;
 
@@ -331,7 +336,7 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
 pub(crate) fn visit<D: Dim, L: ContactLaw<D>>(
     list: &FacetList<D, L::Memory>,
     view: &View<'_, D>,
-    laws: crate::kernel::Laws<'_, L>,
+    laws: crate::view::Laws<'_, L>,
     visit: &mut dyn FnMut(Contact<D>),
 ) {
     let mut candidates = Vec::new();
@@ -429,10 +434,10 @@ pub(crate) fn restore<D: Dim, M: Copy + Default + PartialEq + Stored>(
     let normals: Vec<D::Vec> = from.array_of("directions of contacts with surfaces", contacts.len())?;
     let memories: Vec<M> = from.array_of("memories of contacts with surfaces", contacts.len())?;
     let finite = normals.iter().all(|normal| normal.is_finite());
-    crate::grains::check_finite("directions of contacts with surfaces", finite)?;
+    check_entry("directions of contacts with surfaces", finite)?;
     for ((&[grain, wall, part], &normal), &memory) in contacts.iter().zip(&normals).zip(&memories) {
         let known = walls.get(wall as usize).is_some_and(|wall| matches!(wall.shape, Shape::Facets(_)));
-        crate::grains::check_finite("contacts with surfaces", known)?;
+        check_entry("contacts with surfaces", known)?;
         let grain = places.find(grain)?;
         let slot = Slot { normal, memory };
         lists[grain as usize / blocks.size()].live.push((grain, wall, part, slot));

@@ -1,6 +1,6 @@
-//! Square matrices of the plane and of space, for cells.
+//! Square matrices of the plane and of space: edges of cells, velocity gradients, stresses that need not be symmetric.
 
-use granular_core::{Dim, Linear, Vector};
+use crate::dim::{Dim, Linear, Vector};
 
 /// A matrix by its columns; those beyond the number of axes are zero.
 #[derive(Clone, Copy, Debug, Default)]
@@ -143,7 +143,8 @@ impl<D: Dim> Matrix<D> {
         if row < D::N && column < D::N { self.at(row, column) } else { f64::from(u8::from(row == column)) }
     }
 
-    pub(crate) fn to_array(self) -> [D::Vec; 3] {
+    /// The columns, for snapshots.
+    pub fn to_array(self) -> [D::Vec; 3] {
         self.columns
     }
 }
@@ -151,7 +152,7 @@ impl<D: Dim> Matrix<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::{D2, D3};
+    use crate::dim::{D2, D3};
 
     #[test]
     fn inverses_undo_and_determinants_are_volumes() {

@@ -1,7 +1,8 @@
 //! What lies below grains: a scene without a floor is found before it is run, and a run whose grains are all gone ends.
 
 use crate::dem::Dem;
-use crate::wall::{Shape, Wall};
+use crate::walls::Wall;
+use granular_core::Shape;
 use granular_core::{Dim, Linear, Vector};
 
 /// Grains under gravity that nothing can catch.

@@ -1,81 +1,13 @@
-//! Walls that move: at a steady velocity, to and fro, turning, or under a force.
-//!
-//! A prescribed motion is a closed form of the time for which it has run, never a running sum: the wall is at
-//! the same place after any split of a run and after any restart. A servo is a body of its own, see [`Servo`].
+//! The state of walls that move.
 
-use crate::material::SetupError;
-use crate::pose::{Pose, Rate, Turned};
-use crate::servo::{Drive, Servo, Side};
-use crate::wall::Wall;
-use granular_core::{Dim, Linear, Section, SnapshotError};
+use super::WallMotion;
+use super::pose::{Pose, Rate, Turned};
+use super::servo::{Drive, Servo, Side};
+use crate::dim::{Dim, Linear};
+use crate::setup_error::SetupError;
+use crate::shape::Shape;
+use crate::snapshot::{Section, SnapshotError, check_entry};
 use std::f64::consts::TAU;
-
-/// How a wall moves, from where its shape was given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WallMotion<D: Dim> {
-    /// At a constant velocity.
-    Steady {
-        /// Velocity \[m/s\].
-        velocity: D::Vec,
-    },
-    /// To and fro along a direction: shifted by `amplitude * (sin(2 pi f t + phase) - sin(phase))`, so that it
-    /// begins where its shape was given.
-    Oscillating {
-        /// Greatest displacement \[m\], with its direction.
-        amplitude: D::Vec,
-        /// Frequency f \[Hz\].
-        frequency: f64,
-        /// Phase \[rad\] at which it begins.
-        phase: f64,
-    },
-    /// Turning about a point.
-    Turning {
-        /// A point of the axis \[m\].
-        about: D::Vec,
-        /// Angular velocity \[rad/s\].
-        spin: D::Spin,
-    },
-    /// Pressed by a force along a direction.
-    Servo(Servo<D>),
-}
-
-impl<D: Dim> WallMotion<D> {
-    /// Refuses values that are not finite and directions that are none.
-    ///
-    /// # Errors
-    /// With the value that is out of range.
-    pub fn check(&self, wall: &str) -> Result<(), SetupError> {
-        let refuse = |what: &str, value: f64, allowed| {
-            Err(SetupError::new(format!("{what} of wall `{wall}`"), value, allowed))
-        };
-        match self {
-            Self::Steady { velocity } if !velocity.is_finite() => refuse("velocity", f64::NAN, "finite"),
-            Self::Oscillating { amplitude, .. } if !amplitude.is_finite() => {
-                refuse("amplitude", f64::NAN, "finite")
-            }
-            Self::Oscillating { frequency, .. } if !(frequency.is_finite() && *frequency >= 0.0) => {
-                refuse("frequency", *frequency, "zero or more, and finite")
-            }
-            Self::Oscillating { phase, .. } if !phase.is_finite() => refuse("phase", *phase, "finite"),
-            Self::Turning { about, spin } if !(about.is_finite() && spin.is_finite()) => {
-                refuse("axis or spin", f64::NAN, "finite")
-            }
-            Self::Servo(servo) => servo.check(wall),
-            _ => Ok(()),
-        }
-    }
-
-    /// Greatest speed of a point at this distance \[m\] from where the wall was given; that of a servo follows
-    /// from its state.
-    fn fastest(&self, distance: impl FnOnce(D::Vec) -> f64) -> f64 {
-        match self {
-            Self::Steady { velocity } => velocity.length(),
-            Self::Oscillating { amplitude, frequency, .. } => amplitude.length() * frequency * TAU,
-            Self::Turning { about, spin } => spin.length() * distance(*about),
-            Self::Servo(_) => 0.0,
-        }
-    }
-}
 
 /// The clock of a moving wall: how long it has moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,68 +28,87 @@ impl Running {
     }
 }
 
-/// Push of the grains on a wall, and the power of the wall, over one step.
+/// Push of what touches a wall, and the power of the wall, over one step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Reaction<D: Dim> {
+pub struct Reaction<D: Dim> {
     /// Force on the wall \[N\].
-    pub(crate) force: D::Vec,
-    /// Work of the wall on the grains per time \[W\].
-    pub(crate) power: f64,
+    pub force: D::Vec,
+    /// Work of the wall on them per time \[W\].
+    pub power: f64,
 }
 
 /// One wall that moves.
 #[derive(Clone, Debug)]
-struct Mover<D: Dim> {
+struct MovingWall<D: Dim> {
     wall: usize,
     motion: WallMotion<D>,
     running: Running,
     drive: Drive,
     /// Sides of the area on which a pressure acts; none where a force is given.
     sides: Vec<Side<D>>,
-    /// Distance of the farthest grain from the axis when lists were last built \[m\].
+    /// Distance of the farthest position from the axis when they were last noted \[m\].
     reach: f64,
 }
 
-/// All walls that move, and where they are now.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Movers<D: Dim> {
-    list: Vec<Mover<D>>,
-    /// One for each wall; empty when none moves.
-    pub(crate) poses: Vec<Pose<D>>,
-    /// Push on each wall in the last step; empty when none moves.
-    pub(crate) reactions: Vec<Reaction<D>>,
-    /// Work of walls on grains since the start \[J\].
-    pub(crate) work: f64,
+/// What the motion of walls needs to know of one.
+#[derive(Clone, Copy, Debug)]
+pub struct WallGeometry<'a, D: Dim> {
+    /// Name, for messages.
+    pub name: &'a str,
+    /// Shape where it begins.
+    pub shape: &'a Shape<D>,
+    /// How it moves, if it does.
+    pub motion: Option<WallMotion<D>>,
+    /// Whether it waits where it is until [`MovingWalls::set_running`].
+    pub held: bool,
 }
 
-impl<D: Dim> Movers<D> {
-    pub(crate) fn of(walls: &[Wall<D>]) -> Result<Self, SetupError> {
+/// All walls that move, and where they are now; empty, without cost, where none does.
+#[derive(Clone, Debug, Default)]
+pub struct MovingWalls<D: Dim> {
+    list: Vec<MovingWall<D>>,
+    /// One for each wall; empty when none moves.
+    pub poses: Vec<Pose<D>>,
+    /// Push on each wall in the last step; empty when none moves.
+    pub reactions: Vec<Reaction<D>>,
+    /// Work of walls on what touches them since the start \[J\].
+    pub work: f64,
+}
+
+impl<D: Dim> MovingWalls<D> {
+    /// Those of some walls that move.
+    ///
+    /// # Errors
+    /// When a motion has a value that is out of range.
+    pub fn of(walls: &[WallGeometry<'_, D>]) -> Result<Self, SetupError> {
+        let shapes: Vec<&Shape<D>> = walls.iter().map(|wall| wall.shape).collect();
         let mut list = Vec::new();
         for (wall, description) in walls.iter().enumerate() {
             let Some(motion) = description.motion else { continue };
-            motion.check(&description.name)?;
+            motion.check(description.name)?;
             let running = Running { before: 0.0, since: if description.held { f64::NAN } else { 0.0 } };
             let sides = match motion {
                 WallMotion::Servo(Servo { pressure: Some(pressure), .. }) => {
-                    pressure.sides(&description.name, walls)?
+                    pressure.sides(description.name, &shapes)?
                 }
                 _ => Vec::new(),
             };
-            list.push(Mover { wall, motion, running, drive: Drive::default(), sides, reach: 0.0 });
+            list.push(MovingWall { wall, motion, running, drive: Drive::default(), sides, reach: 0.0 });
         }
         let count = if list.is_empty() { 0 } else { walls.len() };
         let (poses, reactions) = (vec![Pose::default(); count], vec![Reaction::default(); count]);
-        let mut movers = Self { list, poses, reactions, work: 0.0 };
-        movers.place(0.0);
-        Ok(movers)
+        let mut moving = Self { list, poses, reactions, work: 0.0 };
+        moving.place(0.0);
+        Ok(moving)
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    /// Whether no wall moves.
+    pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
     /// Starts or holds a wall. Returns whether it is one that moves.
-    pub(crate) fn set_running(&mut self, wall: usize, runs: bool, time: f64) -> bool {
+    pub fn set_running(&mut self, wall: usize, runs: bool, time: f64) -> bool {
         let Some(mover) = self.list.iter_mut().find(|mover| mover.wall == wall) else { return false };
         if runs != mover.running.runs() {
             let before = mover.running.elapsed(time);
@@ -168,7 +119,7 @@ impl<D: Dim> Movers<D> {
     }
 
     /// Poses at a time between steps \[s\].
-    pub(crate) fn place(&mut self, time: f64) {
+    pub fn place(&mut self, time: f64) {
         for mover in &self.list {
             let pose = mover.at(time);
             self.poses[mover.wall] = Pose { start_rate: pose.rate, ..pose };
@@ -176,7 +127,7 @@ impl<D: Dim> Movers<D> {
     }
 
     /// Poses at the middle of the step that begins at `time`, and rates there and at its start.
-    pub(crate) fn place_in_step(&mut self, time: f64, dt: f64) {
+    pub fn place_in_step(&mut self, time: f64, dt: f64) {
         for mover in &mut self.list {
             let start_rate = mover.at(time).rate;
             mover.drive = mover.drive.half_a_step(dt, &mover.motion, mover.running.runs());
@@ -184,8 +135,8 @@ impl<D: Dim> Movers<D> {
         }
     }
 
-    /// Takes the push of the grains over a step.
-    pub(crate) fn take_reactions(&mut self, dt: f64, ledger: bool) {
+    /// Takes the push on each wall over a step, from [`MovingWalls::reactions`].
+    pub fn take_reactions(&mut self, dt: f64, ledger: bool) {
         for mover in &mut self.list {
             let reaction = self.reactions[mover.wall];
             if ledger {
@@ -198,8 +149,9 @@ impl<D: Dim> Movers<D> {
         }
     }
 
-    /// Notes how far grains are from the axes of walls that turn.
-    pub(crate) fn note_distances(&mut self, positions: &[D::Vec], beyond: f64) {
+    /// Notes how far positions \[m\] of what may touch walls are from the axes of those that turn; walls count `beyond` \[m\]
+    /// farther.
+    pub fn note_distances(&mut self, positions: &[D::Vec], beyond: f64) {
         for mover in &mut self.list {
             if let WallMotion::Turning { about, .. } = mover.motion {
                 let farthest = positions.iter().map(|&x| (x - about).length()).fold(0.0, f64::max);
@@ -208,9 +160,9 @@ impl<D: Dim> Movers<D> {
         }
     }
 
-    /// Greatest speed of any wall near a grain \[m/s\].
-    pub(crate) fn fastest(&self, dt: f64) -> f64 {
-        let speed = |mover: &Mover<D>| {
+    /// Greatest speed of any wall near what may touch it \[m/s\].
+    pub fn fastest(&self, dt: f64) -> f64 {
+        let speed = |mover: &MovingWall<D>| {
             if mover.running.runs() {
                 mover.motion.fastest(|_| mover.reach).max(mover.drive.fastest(dt))
             } else {
@@ -222,18 +174,19 @@ impl<D: Dim> Movers<D> {
 
     /// Greatest speed that a wall will have, as far as it is known before the run \[m/s\]; walls under a force
     /// count with the speed they have.
-    pub(crate) fn fastest_ever(&self) -> f64 {
-        let speed = |mover: &Mover<D>| mover.motion.fastest(|_| mover.reach).max(mover.drive.fastest(0.0));
+    pub fn fastest_ever(&self) -> f64 {
+        let speed =
+            |mover: &MovingWall<D>| mover.motion.fastest(|_| mover.reach).max(mover.drive.fastest(0.0));
         self.list.iter().map(speed).fold(0.0, f64::max)
     }
 
-    /// Walls that move, and where each is: displacement, velocity and angle are those between steps.
-    pub(crate) fn walls(&self) -> impl Iterator<Item = usize> {
+    /// Indices of walls that move.
+    pub fn walls(&self) -> impl Iterator<Item = usize> {
         self.list.iter().map(|mover| mover.wall)
     }
 
     /// Angle by which a turning wall has turned \[rad\]; none for others.
-    pub(crate) fn angle(&self, wall: usize, time: f64) -> Option<f64> {
+    pub fn angle(&self, wall: usize, time: f64) -> Option<f64> {
         let mover = self.list.iter().find(|mover| mover.wall == wall)?;
         match mover.motion {
             WallMotion::Turning { spin, .. } => Some(spin.length() * mover.running.elapsed(time)),
@@ -242,20 +195,21 @@ impl<D: Dim> Movers<D> {
     }
 
     /// Area on which the pressure of a servo acts now \[m^2; m in the plane\]; none where a force is given.
-    pub(crate) fn pressed_area(&self, wall: usize) -> Option<f64> {
+    pub fn pressed_area(&self, wall: usize) -> Option<f64> {
         let mover = self.list.iter().find(|mover| mover.wall == wall && !mover.sides.is_empty())?;
         Some(mover.area(&self.poses))
     }
 
-    /// Walls under a force.
-    pub(crate) fn servos(&self) -> impl Iterator<Item = (usize, &Servo<D>)> {
+    /// Indices of walls under a force, each with its servo.
+    pub fn servos(&self) -> impl Iterator<Item = (usize, &Servo<D>)> {
         self.list.iter().filter_map(|mover| match &mover.motion {
             WallMotion::Servo(servo) => Some((mover.wall, servo)),
             _ => None,
         })
     }
 
-    pub(crate) fn save(&self, to: &mut Section) {
+    /// Adds the state of all motions to a section; nothing when no wall moves.
+    pub fn save(&self, to: &mut Section) {
         if self.is_empty() {
             return;
         }
@@ -274,25 +228,29 @@ impl<D: Dim> Movers<D> {
         to.put_one("work of moving walls", self.work);
     }
 
-    pub(crate) fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
+    /// Takes the state of all motions from a section.
+    ///
+    /// # Errors
+    /// When an entry is missing or does not fit.
+    pub fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
         if self.is_empty() {
             return Ok(());
         }
         let clocks: Vec<[f64; 3]> = from.array_of("clocks of moving walls", self.list.len())?;
         let drives: Vec<[f64; 3]> = from.array_of("servo walls", self.list.len())?;
         let finite = |rows: &[[f64; 3]]| rows.iter().flatten().all(|value| value.is_finite());
-        crate::grains::check_finite("clocks of moving walls", finite(&clocks))?;
-        crate::grains::check_finite("servo walls", finite(&drives))?;
+        check_entry("clocks of moving walls", finite(&clocks))?;
+        check_entry("servo walls", finite(&drives))?;
         for ((mover, [runs, before, since]), drive) in self.list.iter_mut().zip(clocks).zip(drives) {
             mover.running = Running { before, since: if runs == 0.0 { f64::NAN } else { since } };
             mover.drive = Drive::from_array(drive);
         }
         self.work = from.one("work of moving walls")?;
-        crate::grains::check_finite("work of moving walls", self.work.is_finite())
+        check_entry("work of moving walls", self.work.is_finite())
     }
 }
 
-impl<D: Dim> Mover<D> {
+impl<D: Dim> MovingWall<D> {
     fn area(&self, poses: &[Pose<D>]) -> f64 {
         self.sides.iter().map(|side| side.length(poses)).product()
     }

@@ -1,18 +1,18 @@
 //! Walls under a force: a body with a mass and a dashpot, which moves along one direction only.
 //!
 //! ```text
-//! m X'' = F_target + F_grains . d - c X'        |X'| <= v_max
+//! m X'' = F_target + F_push . d - c X'        |X'| <= v_max
 //! ```
 //!
-//! with `d` the unit direction of the target force, `X` the displacement along it and `F_grains` the push of
-//! the grains. The wall stands still where the grains push back with the target. It is moved by the same
-//! leapfrog as the grains, the dashpot implicitly, so that it never limits the step.
+//! with `d` the unit direction of the target force, `X` the displacement along it and `F_push` the push of
+//! what it touches, such as grains. The wall stands still where that pushes back with the target. It is moved by a
+//! leapfrog, the dashpot implicitly, so that it never limits the step.
 
-use crate::material::SetupError;
-use crate::moving::WallMotion;
-use crate::pose::Pose;
-use crate::wall::{Shape, Wall};
-use granular_core::{Dim, Linear};
+use super::WallMotion;
+use super::pose::Pose;
+use crate::dim::{Dim, Linear};
+use crate::setup_error::SetupError;
+use crate::shape::Shape;
 
 /// A wall pressed by a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,20 +55,21 @@ impl PressureBetween {
     ///
     /// # Errors
     /// When the pressure is not finite, or a pair is not one of planes that face one another.
-    pub fn check<D: Dim>(&self, wall: &str, walls: &[Wall<D>]) -> Result<(), SetupError> {
-        self.sides(wall, walls).map(|_| ())
+    pub fn check<D: Dim>(&self, wall: &str, walls: &[impl AsRef<Shape<D>>]) -> Result<(), SetupError> {
+        let shapes: Vec<&Shape<D>> = walls.iter().map(AsRef::as_ref).collect();
+        self.sides(wall, &shapes).map(|_| ())
     }
 
     /// The sides of the area.
     ///
     /// # Errors
     /// As [`PressureBetween::check`].
-    pub(crate) fn sides<D: Dim>(&self, wall: &str, walls: &[Wall<D>]) -> Result<Vec<Side<D>>, SetupError> {
+    pub(crate) fn sides<D: Dim>(&self, wall: &str, walls: &[&Shape<D>]) -> Result<Vec<Side<D>>, SetupError> {
         if !self.pressure.is_finite() {
             return Err(SetupError::new(format!("pressure on wall `{wall}`"), self.pressure, "finite"));
         }
         let side = |pair: &[usize; 2]| {
-            let planes = pair.map(|index| match walls.get(index).map(|wall| &wall.shape) {
+            let planes = pair.map(|index| match walls.get(index) {
                 Some(Shape::Plane { point, normal }) => Some((*point, *normal)),
                 _ => None,
             });
@@ -160,7 +161,7 @@ impl Drive {
         Self { offset: self.offset + 0.5 * dt * self.velocity, now, ..self }
     }
 
-    /// Takes the push of the grains and what a pressure adds to the force of the servo, and drifts the other half.
+    /// Takes the push on the wall and what a pressure adds to the force of the servo, and drifts the other half.
     pub(crate) fn other_half<D: Dim>(
         self,
         dt: f64,
