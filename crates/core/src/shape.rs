@@ -237,6 +237,14 @@ impl<D: Dim> Shape<D> {
     }
 }
 
+/// All corners of a box, from its lowest and highest one.
+pub fn corners<D: Dim>(low: D::Vec, high: D::Vec) -> impl Iterator<Item = D::Vec> {
+    (0..1 << D::N).map(move |corner| {
+        let of = |axis: usize| if corner >> axis & 1 == 0 { low } else { high };
+        (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, of(axis).component(axis)))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

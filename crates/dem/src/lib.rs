@@ -61,10 +61,10 @@ mod view;
 pub mod walls;
 
 pub use cell::{Cell, CellControl, Control, Matrix};
-pub use coarse::{CoarseFields, CoarseGrid};
 pub use contact::{Contact, Partner};
 pub use dem::Dem;
 pub use grains::Grain;
+pub use granular_core::coarse::{CoarseFields, CoarseGrid};
 pub use granular_core::shape::{Facets, Shape};
 pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
 pub use law::{

@@ -9,5 +9,3 @@ mod wall;
 
 pub use below::{Falling, Gates};
 pub use wall::Wall;
-
-pub(crate) use below::corners;

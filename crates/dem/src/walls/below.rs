@@ -3,6 +3,7 @@
 use crate::dem::Dem;
 use crate::walls::Wall;
 use granular_core::Shape;
+use granular_core::shape::corners;
 use granular_core::{Dim, Linear, Vector};
 
 /// Grains under gravity that nothing can catch.
@@ -83,14 +84,6 @@ impl Gates {
     fn count<D: Dim>(self, wall: &Wall<D>) -> bool {
         self == Self::Shut || !wall.open
     }
-}
-
-/// Corners of a box.
-pub(crate) fn corners<D: Dim>(low: D::Vec, high: D::Vec) -> impl Iterator<Item = D::Vec> {
-    (0..1 << D::N).map(move |corner| {
-        let of = |axis: usize| if corner >> axis & 1 == 0 { low } else { high };
-        (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, of(axis).component(axis)))
-    })
 }
 
 /// The bounds of a wall, as they look along gravity.

@@ -3,11 +3,12 @@
 
 use super::grid::CoarseGrid;
 use super::images::{Images, Seen};
+use super::source::{CoarseSource, ForceBranch};
 use super::spline::{Weights, gauss, touches};
-use crate::contact::Partner;
-use crate::dem::Dem;
-use granular_core::glam::DVec3;
-use granular_core::{Blocks, Dim, SymmetricTensor, Vector};
+use crate::blocks::Blocks;
+use crate::dim::{Dim, Vector};
+use crate::tensor::SymmetricTensor;
+use glam::DVec3;
 use std::ops::Range;
 
 /// Most blocks that a grid is cut into.
@@ -97,7 +98,7 @@ struct Part<'a, D: Dim> {
 }
 
 impl<D: Dim> Sums<D> {
-    pub(super) fn of(dem: &Dem<D>, grid: &CoarseGrid<D>, wanted: Wanted) -> Self {
+    pub(super) fn of(source: &CoarseSource<'_, D>, grid: &CoarseGrid<D>, wanted: Wanted) -> Self {
         let count = |wanted: bool| if wanted { grid.count() } else { 0 };
         let mut sums = Self {
             bulk: vec![Bulk::default(); grid.count()],
@@ -107,9 +108,9 @@ impl<D: Dim> Sums<D> {
             fabric: vec![Fabric::default(); count(wanted.fabric)],
             outside: 0.0,
         };
-        let seen = Images::of(dem, grid, 0.0).grains(dem);
-        let branches = if wanted.contacts { branches(dem, grid) } else { Vec::new() };
-        let normals = if wanted.fabric { normals(dem) } else { Vec::new() };
+        let seen = Images::of(source, grid, 0.0).grains(source);
+        let branches = if wanted.contacts { branches(source, grid) } else { Vec::new() };
+        let normals = if wanted.fabric { normals(source) } else { Vec::new() };
         let blocks = Blocks::new(grid.count(), grid.layer() * grid.layers().div_ceil(BLOCKS));
         let Self { bulk, slopes, kinetic, pushes, fabric, .. } = &mut sums;
         let work = (&mut bulk[..], &mut slopes[..], &mut kinetic[..], &mut pushes[..], &mut fabric[..]);
@@ -117,21 +118,22 @@ impl<D: Dim> Sums<D> {
             let range = blocks.range(block);
             let layers = range.start / grid.layer()..range.end / grid.layer();
             let part = Part { grid, layers, start: range.start };
-            part.grains(dem, &seen, bulk);
+            part.grains(source, &seen, bulk);
             if wanted.slopes {
-                part.slopes(dem, &seen, slopes);
+                part.slopes(source, &seen, slopes);
             }
             if wanted.kinetic {
-                part.kinetic(dem, &seen, bulk, kinetic);
+                part.kinetic(source, &seen, bulk, kinetic);
             }
             if wanted.contacts {
                 part.contacts(&branches, pushes);
+                part.stresses(source, &seen, pushes);
             }
             if wanted.fabric {
                 part.fabric(&seen, &normals, fabric);
             }
         });
-        sums.outside = outside(dem, grid, &seen);
+        sums.outside = outside(source, grid, &seen);
         sums
     }
 }
@@ -165,11 +167,10 @@ impl<D: Dim> Part<'_, D> {
         }
     }
 
-    fn grains(&self, dem: &Dem<D>, seen: &[Seen<D>], bulk: &mut [Bulk<D>]) {
-        let grains = &dem.grains;
+    fn grains(&self, source: &CoarseSource<'_, D>, seen: &[Seen<D>], bulk: &mut [Bulk<D>]) {
         for &Seen { grain, place, velocity } in self.near(seen) {
-            let (mass, radius) = (grains.mass[grain], grains.radius[grain]);
-            let (volume, diameter) = (D::ball_volume(radius), 2.0 * radius * mass);
+            let (mass, (volume, diameter)) = (source.mass[grain], source.size.of::<D>(grain));
+            let diameter = diameter * mass;
             let momentum = velocity * mass;
             self.spread(&self.grid.weights(place), |cell, weight| {
                 let bulk = &mut bulk[cell];
@@ -182,9 +183,9 @@ impl<D: Dim> Part<'_, D> {
         }
     }
 
-    fn slopes(&self, dem: &Dem<D>, seen: &[Seen<D>], slopes: &mut [Slopes<D>]) {
+    fn slopes(&self, source: &CoarseSource<'_, D>, seen: &[Seen<D>], slopes: &mut [Slopes<D>]) {
         for &Seen { grain, place, velocity } in self.near(seen) {
-            let mass = dem.grains.mass[grain];
+            let mass = source.mass[grain];
             let momentum = velocity * mass;
             let (weights, along) = (self.grid.weights(place), self.grid.slopes(place));
             for axis in 0..D::N {
@@ -199,10 +200,16 @@ impl<D: Dim> Part<'_, D> {
     }
 
     /// About the mean velocity of each cell: nothing is lost in a difference of large numbers.
-    fn kinetic(&self, dem: &Dem<D>, seen: &[Seen<D>], bulk: &[Bulk<D>], kinetic: &mut [SymmetricTensor]) {
+    fn kinetic(
+        &self,
+        source: &CoarseSource<'_, D>,
+        seen: &[Seen<D>],
+        bulk: &[Bulk<D>],
+        kinetic: &mut [SymmetricTensor],
+    ) {
         let mean: Vec<D::Vec> = bulk.iter().map(|bulk| mean_velocity(bulk).unwrap_or_default()).collect();
         for &Seen { grain, place, velocity } in self.near(seen) {
-            let mass = dem.grains.mass[grain];
+            let mass = source.mass[grain];
             self.spread(&self.grid.weights(place), |cell, weight| {
                 let about = DVec3::from((velocity - mean[cell]).padded());
                 kinetic[cell] += SymmetricTensor::dyad(about, about) * (weight * mass);
@@ -235,6 +242,19 @@ impl<D: Dim> Part<'_, D> {
                     });
                 }
             }
+        }
+    }
+
+    /// Stresses that particles of a continuum carry themselves.
+    fn stresses(&self, source: &CoarseSource<'_, D>, seen: &[Seen<D>], pushes: &mut [Pushes<D>]) {
+        if source.stress.is_empty() {
+            return;
+        }
+        for &Seen { grain, place, .. } in self.near(seen) {
+            let product = source.stress[grain] * source.size.of::<D>(grain).0;
+            self.spread(&self.grid.weights(place), |cell, weight| {
+                pushes[cell].stress += product * weight;
+            });
         }
     }
 
@@ -272,29 +292,22 @@ pub(super) fn mean_velocity<D: Dim>(bulk: &Bulk<D>) -> Option<D::Vec> {
 }
 
 /// Mass that the kernel spreads beyond the grid \[kg\]; images of a grain may be on the grid where it is not.
-fn outside<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>, seen: &[Seen<D>]) -> f64 {
-    let mut missing = vec![1.0; dem.len()];
+fn outside<D: Dim>(source: &CoarseSource<'_, D>, grid: &CoarseGrid<D>, seen: &[Seen<D>]) -> f64 {
+    let mut missing = vec![1.0; source.position.len()];
     for seen in seen {
         missing[seen.grain] -= grid.share(seen.place);
     }
-    missing.iter().zip(&dem.grains.mass).map(|(missing, mass)| mass * f64::max(*missing, 0.0)).sum()
+    missing.iter().zip(source.mass).map(|(missing, mass)| mass * f64::max(*missing, 0.0)).sum()
 }
 
-/// Branches of all contacts. They are laid from the first grain along the normal, so that a neighbour across a periodic
-/// side is met where it acts, and from each of its images.
-fn branches<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>) -> Vec<Branch<D>> {
+/// Branches of all forces, from each image of the first body that may matter.
+fn branches<D: Dim>(source: &CoarseSource<'_, D>, grid: &CoarseGrid<D>) -> Vec<Branch<D>> {
     let mut branches = Vec::new();
-    let longest = 2.0 * dem.grains.radius_range().1;
-    let images = Images::of(dem, grid, longest);
-    dem.visit_contacts(&mut |contact| {
-        let radius = dem.grains.radius[contact.first];
-        let (length, wall) = match contact.partner {
-            Partner::Grain(second) => (radius + dem.grains.radius[second] - contact.overlap, None),
-            // The point of contact lies on the wall, which does not give way.
-            Partner::Wall(_) => (radius - contact.overlap, Some(contact.force)),
-        };
-        let (arm, position) = (contact.normal * length, dem.grains.position[contact.first]);
-        let [arm3, force] = [arm, contact.force].map(|v| DVec3::from(v.padded()));
+    let images = Images::of(source, grid, source.longest_branch);
+    (source.visit_branches)(&mut |branch: ForceBranch<D>| {
+        let (arm, position) = (branch.normal * branch.length, source.position[branch.first]);
+        let wall = branch.second.is_none().then_some(branch.force);
+        let [arm3, force] = [arm, branch.force].map(|v| DVec3::from(v.padded()));
         let product = SymmetricTensor::dyad(force, arm3);
         images.visit(position, |way| {
             let (from, to) = (grid.place(position + way - arm), grid.place(position + way));
@@ -304,20 +317,18 @@ fn branches<D: Dim>(dem: &Dem<D>, grid: &CoarseGrid<D>) -> Vec<Branch<D>> {
     branches
 }
 
-/// Number of contacts and sum of `n n` of each grain, walls included.
-fn normals<D: Dim>(dem: &Dem<D>) -> Vec<Fabric> {
-    let mut list = vec![Fabric::default(); dem.len()];
-    dem.visit_contacts(&mut |contact| {
-        let normal = DVec3::from(contact.normal.padded());
+/// Number of contacts and sum of `n n` of each particle, walls included.
+fn normals<D: Dim>(source: &CoarseSource<'_, D>) -> Vec<Fabric> {
+    let mut list = vec![Fabric::default(); source.position.len()];
+    (source.visit_branches)(&mut |branch: ForceBranch<D>| {
+        let normal = DVec3::from(branch.normal.padded());
         let dyad = SymmetricTensor::dyad(normal, normal);
         let mut add = |index: usize| {
             list[index].contacts += 1.0;
             list[index].normals += dyad;
         };
-        add(contact.first);
-        if let Partner::Grain(second) = contact.partner {
-            add(second);
-        }
+        add(branch.first);
+        branch.second.into_iter().for_each(add);
     });
     list
 }

@@ -2,10 +2,12 @@
 
 use super::catalogue::{FIELDS, OUTSIDE, needs, shown};
 use super::grid::CoarseGrid;
+use super::source::CoarseSource;
 use super::sums::{Bulk, Sums, Wanted, mean_velocity};
-use crate::dem::Dem;
-use granular_core::glam::DVec3;
-use granular_core::{Dim, FieldRef, FieldSink, Linear, Shown, SymmetricTensor, Vector};
+use crate::dim::{Dim, Linear, Vector};
+use crate::field::{FieldRef, FieldSink, Shown};
+use crate::tensor::SymmetricTensor;
+use glam::DVec3;
 
 /// Fields of a continuum at one time, one value per cell, x fastest. Where there is no grain, densities and stresses are
 /// zero, and means over grains are not a number.
@@ -15,30 +17,32 @@ pub struct CoarseFields<D: Dim> {
     sums: Sums<D>,
 }
 
-impl<D: Dim> Dem<D> {
-    /// All fields on a grid.
-    pub fn coarse_fields(&self, grid: &CoarseGrid<D>) -> CoarseFields<D> {
-        CoarseFields { grid: *grid, sums: Sums::of(self, grid, Wanted::ALL) }
-    }
-
-    /// Shows fields on a grid; sums only what the sink wants, and nothing when it wants none.
-    pub fn show_coarse(&self, grid: &CoarseGrid<D>, sink: &mut dyn FieldSink) {
-        let Some(wanted) = needs(|name| sink.wants(name)) else { return };
-        CoarseFields { grid: *grid, sums: Sums::of(self, grid, wanted) }.show(sink);
-    }
-
-    /// Everything that [`Dem::show_coarse`] can show.
-    pub fn coarse_catalogue() -> Vec<Shown> {
-        shown()
-    }
-}
-
 /// The value, or not a number where there is none.
 fn or_nothing(value: Option<f64>) -> f64 {
     value.unwrap_or(f64::NAN)
 }
 
 impl<D: Dim> CoarseFields<D> {
+    /// All fields of what a solver lends.
+    pub fn of(source: &CoarseSource<'_, D>, grid: &CoarseGrid<D>) -> Self {
+        Self { grid: *grid, sums: Sums::of(source, grid, Wanted::ALL) }
+    }
+
+    /// Shows fields on a grid; sums only what the sink wants, and asks for no `source` when it wants nothing.
+    pub fn show_of<'a>(
+        source: impl FnOnce() -> CoarseSource<'a, D>,
+        grid: &CoarseGrid<D>,
+        sink: &mut dyn FieldSink,
+    ) {
+        let Some(wanted) = needs(|name| sink.wants(name)) else { return };
+        Self { grid: *grid, sums: Sums::of(&source(), grid, wanted) }.show(sink);
+    }
+
+    /// Everything that [`CoarseFields::show_of`] can show.
+    pub fn catalogue() -> Vec<Shown> {
+        shown()
+    }
+
     fn per_volume<T>(&self, sums: &[T], value: impl Fn(&T) -> f64) -> Vec<f64> {
         let volume = self.grid.cell_volume();
         sums.iter().map(|sum| value(sum) / volume).collect()

@@ -1,7 +1,7 @@
 //! Names and units of the fields.
 
 use super::sums::Wanted;
-use granular_core::{Shown, ShownAs};
+use crate::field::{Shown, ShownAs};
 
 /// Share of the mass that the kernel spreads beyond the grid.
 pub(super) const OUTSIDE: &str = "mass_outside";
