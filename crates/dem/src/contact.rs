@@ -1,7 +1,7 @@
 //! A contact as outputs see it.
 
 use crate::kinematics::push_of;
-use crate::law::{ContactLaw, Meeting};
+use crate::law::{ContactLaw, Kinematics};
 use granular_core::Dim;
 
 /// A contact between steps, for output.
@@ -43,21 +43,21 @@ pub enum Partner {
 /// A contact as outputs see it.
 pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
     law: &L,
-    meeting: &Meeting<D>,
+    kinematics: &Kinematics<D>,
     memory: L::Memory,
     (first, partner): (usize, Partner),
     branch: D::Vec,
 ) -> Contact<D> {
-    let (load, energy) = law.at_rest(meeting, memory);
+    let (load, energy) = law.at_rest(kinematics, memory);
     Contact {
         first,
         partner,
         branch,
         shift: [0; 3],
-        normal: meeting.normal,
-        overlap: meeting.overlap,
+        normal: kinematics.normal,
+        overlap: kinematics.overlap,
         normal_force: load.normal,
-        force: push_of::<D, L>(&load, meeting.normal),
+        force: push_of::<D, L>(&load, kinematics.normal),
         torque: load.rolling,
         energy,
     }

@@ -5,8 +5,6 @@
 //! block goes to `outgoing`, from where that block collects it in the order of its `inbox`.
 //! Every grain thus sums its loads in an order that depends on the state alone.
 
-use crate::cell::Cell;
-use crate::cell::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
 use crate::contact::{Contact, Partner, contact_of};
 use crate::grains::Grains;
 use crate::kinematics::overlapping;
@@ -15,6 +13,8 @@ use crate::ledger::{Losses, Tally};
 use crate::lists::{BlockList, Places, Receipt, places, spare};
 use crate::material::{Materials, Tension};
 use crate::pass::{Kernel, Owed, Trouble};
+use crate::periodic::PeriodicCell;
+use crate::periodic::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
 use crate::view::{Laws, View};
 use crate::walls::Wall;
 use crate::walls::contact::meet_wall;
@@ -109,7 +109,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
     fn list_images(
         &mut self,
         view: &View<'_, D>,
-        cell: &Cell<D>,
+        cell: &PeriodicCell<D>,
         order: Option<&[u32]>,
         skin: f64,
         largest: f64,
@@ -144,12 +144,12 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         for list in &self.images {
             for (pair, &memory) in list.pairs.iter().zip(&list.memory) {
                 let met = meet_image::<D, L>(view, cell, pair, 0.0);
-                let Some((meeting, _, _)) = met else { continue };
+                let Some((kinematics, _, _)) = met else { continue };
                 let (first, second) = (pair.first as usize, pair.second as usize);
                 let law = laws.between(view.material_of(first), view.material_of(second));
                 let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
                 let bodies = (first, Partner::Grain(second));
-                let contact = contact_of::<D, L>(law, &meeting, memory, bodies, branch);
+                let contact = contact_of::<D, L>(law, &kinematics, memory, bodies, branch);
                 visit(Contact { shift: pair.shift, ..contact });
             }
         }
@@ -316,10 +316,16 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let laws = Laws { list: &self.laws, materials: self.materials };
         for (block, list) in self.lists.iter().enumerate() {
             list.visit_pairs(self.blocks.range(block), |first, second, &memory| {
-                if let Some(meeting) = overlapping::<D, L>(view, first, second) {
+                if let Some(kinematics) = overlapping::<D, L>(view, first, second) {
                     let law = laws.between(view.material_of(first), view.material_of(second));
                     let branch = view.position[first] - view.position[second];
-                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Grain(second)), branch));
+                    visit(contact_of::<D, L>(
+                        law,
+                        &kinematics,
+                        memory,
+                        (first, Partner::Grain(second)),
+                        branch,
+                    ));
                 }
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
@@ -329,10 +335,10 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
                 } else {
                     meet_wall::<D, L, true>(view, first, wall)
                 };
-                if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
+                if let Some((kinematics, _)) = met.filter(|(kinematics, _)| kinematics.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-                    let branch = meeting.normal * (view.radius[first] - meeting.overlap);
-                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
+                    let branch = kinematics.normal * (view.radius[first] - kinematics.overlap);
+                    visit(contact_of::<D, L>(law, &kinematics, memory, (first, Partner::Wall(wall)), branch));
                 }
             }
             surfaces::visit(&self.facets[block], view, laws, visit);

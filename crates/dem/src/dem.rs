@@ -1,32 +1,28 @@
 //! The solver: set-up, the step, and changes between stages.
 
-use crate::cell::Cell;
+mod changes;
+mod step;
+
 use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
+use crate::inlets::InletsAndOutlets;
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
-use crate::pass::Trouble;
-use crate::setup::{ContactModel, LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::periodic::PeriodicCell;
+use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::shaking::Shaken;
-use crate::traffic::Traffic;
 use crate::view::View;
 use crate::walls::Wall;
-use crate::{lists, motion};
 use granular_core::Shape;
 use granular_core::solver::check_step;
-use granular_core::walls::{MovingWalls, Reaction, WallGeometry};
+use granular_core::walls::{MovingWalls, WallGeometry};
 use granular_core::{
     Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
     SnapshotError, Solver, StepClock, StepError,
 };
 
-/// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
-/// sorts at the same places.
-const SORT_EVERY: u64 = 5000;
-/// Below this number sorting does not pay.
-const SORT_FROM: usize = 512;
 /// Blocks that a sample is cut into, and their smallest size. Many small blocks share the work
 /// evenly (16 instead of 64 cost a fifth of the speed of two threads on a collapsing column of
 /// 13 000 disks) for 2 % on one thread.
@@ -41,13 +37,13 @@ pub struct Dem<D: Dim> {
     pub(crate) walls: Vec<Wall<D>>,
     pub(crate) moving_walls: MovingWalls<D>,
     pub(crate) clock: StepClock,
-    pub(crate) traffic: Traffic<D>,
+    pub(crate) inlets: InletsAndOutlets<D>,
     pub(crate) gravity: D::Vec,
     pub(crate) shaken: Option<Shaken<D>>,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
     pub(crate) pairs: Box<dyn Pairs<D>>,
-    pub(crate) cell: Option<Box<Cell<D>>>,
+    pub(crate) cell: Option<Box<PeriodicCell<D>>>,
     pub(crate) blocks: Blocks,
     pub(crate) losses: Losses,
     /// Energy put in by changes between steps, such as a new gravity \[J\].
@@ -111,7 +107,7 @@ impl<D: Dim> Dem<D> {
         let mut dem = Self {
             moving_walls,
             clock: StepClock::default(),
-            traffic: Traffic::new(list.len()),
+            inlets: InletsAndOutlets::new(list.len()),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
             speeds: vec![0; blocks.count()],
@@ -202,28 +198,6 @@ impl<D: Dim> Dem<D> {
         self.losses
     }
 
-    /// Opens or closes the wall of this name. Returns whether there is one.
-    pub fn set_open(&mut self, name: &str, open: bool) -> bool {
-        let found = self.walls.iter().position(|wall| wall.name == name);
-        self.change(|dem| {
-            if let Some(index) = found {
-                dem.walls[index].open = open;
-            }
-        });
-        found.is_some()
-    }
-
-    /// Starts or holds the moving wall of this name, where it is. Returns whether there is one.
-    pub fn set_moving(&mut self, name: &str, moves: bool) -> bool {
-        let Some(wall) = self.walls.iter().position(|wall| wall.name == name) else { return false };
-        let time = self.clock.time();
-        let found = self.moving_walls.set_running(wall, moves, time);
-        if found {
-            self.moving_walls.place(time);
-        }
-        found
-    }
-
     /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
     pub fn wall_work(&self) -> f64 {
         self.moving_walls.work
@@ -245,49 +219,6 @@ impl<D: Dim> Dem<D> {
     /// Simulated time since the start \[s\].
     pub fn time(&self) -> f64 {
         self.clock.time()
-    }
-
-    /// Changes gravity \[m/s^2\].
-    pub fn set_gravity(&mut self, gravity: D::Vec) {
-        self.change(|dem| dem.gravity = gravity);
-    }
-
-    /// Changes the friction of one material. When friction comes into a scene that had none,
-    /// grains begin to turn and contacts to remember.
-    pub fn set_friction(&mut self, material: MaterialId, friction: f64) {
-        self.change(|dem| {
-            dem.materials.set_friction(material, friction);
-            dem.take_materials(needs_rotation(&dem.materials));
-        });
-    }
-
-    /// Sets all velocities and spins to zero.
-    pub fn stop_motion(&mut self) {
-        self.change(|dem| {
-            dem.grains.velocity.fill(D::Vec::ZERO);
-            dem.grains.spin.fill(D::Spin::ZERO);
-        });
-    }
-
-    /// Changes something between steps, and books the energy that this puts in.
-    pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
-        let before = self.options.ledger.then(|| self.energies().mechanical());
-        change(self);
-        self.list(0.0, None);
-        if let Some(before) = before {
-            self.injected += self.energies().mechanical() - before;
-        }
-    }
-
-    /// Takes changed materials; grains begin to turn if they shall. They never stop turning: a
-    /// scene may give friction and take it away again.
-    pub(crate) fn take_materials(&mut self, turning: bool) {
-        if self.custom_law || self.pairs.tangential() || !turning {
-            self.pairs.update(&self.materials, self.options.tension);
-        } else {
-            self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks, true);
-            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
-        }
     }
 
     /// What kernels see of the state between steps.
@@ -335,128 +266,6 @@ impl<D: Dim> Dem<D> {
         let blocks = self.cut();
         self.pairs.regroup(&self.walls, blocks, place);
         self.list(0.0, None);
-    }
-
-    /// Sorts grains in memory when the count of steps says so.
-    pub(crate) fn sort_if_due(&mut self) {
-        if self.sorts_after(0) {
-            let (_, largest) = self.grains.radius_range();
-            let order = self.grains.sort(2.0 * largest);
-            self.list(0.0, Some(&order));
-        }
-    }
-
-    /// Whether grains will be sorted when so many more steps are taken.
-    fn sorts_after(&self, steps: u64) -> bool {
-        (self.steps + steps).is_multiple_of(SORT_EVERY) && self.len() >= SORT_FROM
-    }
-
-    /// Steps without a periodic cell.
-    fn advance_in_the_open(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
-        // Between two steps of one call, the end of one and the start of the next share a pass.
-        let mut opened = false;
-        for remaining in (0..steps).rev() {
-            if !opened {
-                self.sort_if_due();
-                self.exchange_if_due();
-                motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
-            }
-            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
-            self.load_and_kick(dt, opened)?;
-        }
-        self.moving_walls.place(self.clock.time());
-        Ok(())
-    }
-
-    /// One step between its two halves: lists, loads, kick.
-    fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
-        let mut stride = motion::fastest(&self.speeds) * dt;
-        if !self.moving_walls.is_empty() {
-            stride = stride.max(self.moving_walls.fastest(dt) * dt);
-            self.moving_walls.place_in_step(self.clock.time(), dt);
-        }
-        if !stride.is_finite() {
-            return Err(self.not_finite());
-        }
-        self.travel += stride;
-        // Much too long a list costs more than another one.
-        if 2.0 * self.travel + stride > self.reach || self.reach > 4.0 * self.reach_for(stride) {
-            self.list(stride, None);
-        }
-        self.push(dt, stride);
-        self.last_dt = dt;
-        if !self.moving_walls.is_empty() {
-            self.move_walls(dt);
-        }
-        let shaking = self.shake(dt);
-        let before = shaking.filter(|_| self.options.ledger).map(|_| self.momentum());
-        let (pairs, gravity) = (self.pairs.as_ref(), self.gravity + shaking.unwrap_or(D::Vec::ZERO));
-        motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
-        if let (Some(shaking), Some(before)) = (shaking, before) {
-            self.injected += 0.5 * dt * shaking.dot(before + self.momentum());
-        }
-        self.steps += 1;
-        self.clock.step();
-        let (losses, trouble) = self.pairs.outcome();
-        self.losses += losses;
-        if !self.losses.total().is_finite() {
-            let (solver, quantity, step) = ("dem", "losses of energy", self.steps);
-            return Err(StepError::NotFinite { solver, quantity, id: 0, step });
-        }
-        trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
-    }
-
-    /// Tells walls how grains pushed them.
-    pub(crate) fn move_walls(&mut self, dt: f64) {
-        self.moving_walls.reactions.fill(Reaction::default());
-        self.pairs.add_reactions(&mut self.moving_walls.reactions);
-        self.moving_walls.take_reactions(dt, self.options.ledger);
-    }
-
-    /// Writes the loads of all contacts where the accelerations will be.
-    fn push(&mut self, dt: f64, margin: f64) {
-        let mut force = std::mem::take(&mut self.grains.acceleration);
-        let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let view = View {
-            velocity: &self.grains.middle_velocity,
-            spin: &self.grains.middle_spin,
-            dt,
-            predicts: self.pairs.predicts(),
-            margin,
-            ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt)
-        };
-        self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
-        (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
-    }
-
-    pub(crate) fn not_finite(&self) -> StepError {
-        let grains = &self.grains;
-        let at =
-            lists::all_finite::<D>(&grains.position).or_else(|| lists::all_finite::<D>(&grains.velocity));
-        let id = at.map_or(0, |index| u64::from(grains.id[index]));
-        StepError::NotFinite { solver: "dem", quantity: "motion", id, step: self.steps }
-    }
-
-    pub(crate) fn too_deep(&self, trouble: Trouble) -> StepError {
-        let id = self.grains.id[trouble.first as usize];
-        let (share, allowed) = (trouble.overlap / trouble.radius, crate::view::DEEPEST);
-        // As if this was the hardest impact; it may be harder still a step later.
-        let stiffer = match self.options.contact {
-            ContactModel::Linear => {
-                let factor = crate::limits::softer_than(share / allowed, crate::limits::LINEAR);
-                format!("raise the normal stiffness at least {factor}-fold")
-            }
-            ContactModel::Hertz => {
-                let factor = crate::limits::softer_than(share / allowed, crate::limits::HERTZ);
-                format!("raise Young's modulus at least {factor}-fold")
-            }
-        };
-        StepError::TooStiff {
-            what: format!("overlap over radius at grain {id} in step {}", self.steps),
-            value: share,
-            allowed,
-            hint: format!("{stiffer}, or lower the speed of the grains"),
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! How two bodies move at their contact, from how they move as a whole.
 
-use crate::law::{ContactLaw, Load, Meeting};
+use crate::law::{ContactLaw, Kinematics, Load};
 use crate::view::{Body, View};
 use granular_core::{Dim, Linear};
 
@@ -28,7 +28,7 @@ pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) 
     if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
 }
 
-/// The meeting of a body with another, each with its lever arm, if they meet within the step.
+/// The kinematics of a body with another, each with its lever arm, if they meet within the step.
 ///
 /// `turning` is the rate of the normal at the start of the step \[1/s\].
 #[inline(always)]
@@ -38,12 +38,12 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     (other, other_arm): (&Body<D>, f64),
     (normal, turning): (D::Vec, impl FnOnce() -> D::Vec),
     overlap: f64,
-) -> Meeting<D> {
+) -> Kinematics<D> {
     let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
     let start_relative = own.start_velocity - other.start_velocity;
     let (presence, overlap) = share_of_step(overlap, approach, view.dt);
-    let mut meeting = Meeting {
+    let mut kinematics = Kinematics {
         normal,
         overlap,
         presence,
@@ -64,23 +64,23 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     if L::TANGENTIAL {
         if view.predicts {
             let surface = D::tangential(own.spin * own_arm + other.spin * other_arm, normal);
-            meeting.slip = D::cross(normal, relative) - surface;
-            meeting.roll = D::tangential(own.spin - other.spin, normal);
+            kinematics.slip = D::cross(normal, relative) - surface;
+            kinematics.roll = D::tangential(own.spin - other.spin, normal);
         }
         // The velocities are those half a step before the normal. Bodies that turn as one with a
         // component along it would slide on each other by this difference.
         let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
         let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
         // Within the tangent plane of now, or the moments on the two bodies would not balance.
-        meeting.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
-        meeting.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
-        meeting.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
+        kinematics.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
+        kinematics.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
+        kinematics.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {
-            meeting.twisting = D::twist(own.spin - other.spin, normal);
-            meeting.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
+            kinematics.twisting = D::twist(own.spin - other.spin, normal);
+            kinematics.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
         }
     }
-    meeting
+    kinematics
 }
 
 /// Two grains at a distance: `arm` leads from the second to the first.
@@ -98,9 +98,9 @@ impl<D: Dim> Pair<D> {
         self.own.radius + self.other.radius - self.distance_squared.sqrt()
     }
 
-    /// The meeting and both lever arms.
+    /// The kinematics and both lever arms.
     #[inline(always)]
-    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> (Meeting<D>, (f64, f64)) {
+    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> (Kinematics<D>, (f64, f64)) {
         let Self { own, other, .. } = self;
         let distance = self.distance_squared.sqrt();
         let overlap = own.radius + other.radius - distance;
@@ -108,20 +108,20 @@ impl<D: Dim> Pair<D> {
         let arms = (own.radius - shorter, other.radius - shorter);
         let normal = self.arm * (1.0 / distance);
         let turning = || (own.start_velocity - other.start_velocity) * (1.0 / distance);
-        let mut meeting =
+        let mut kinematics =
             kinematics_of::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap);
-        meeting.effective_mass = own.mass * other.mass / (own.mass + other.mass);
-        meeting.effective_radius = own.radius * other.radius / (own.radius + other.radius);
-        (meeting, arms)
+        kinematics.effective_mass = own.mass * other.mass / (own.mass + other.mass);
+        kinematics.effective_radius = own.radius * other.radius / (own.radius + other.radius);
+        (kinematics, arms)
     }
 }
 
-/// The meeting of two grains that overlap now.
+/// The kinematics of two grains that overlap now.
 pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     first: usize,
     second: usize,
-) -> Option<Meeting<D>> {
+) -> Option<Kinematics<D>> {
     let arm = view.position[first] - view.position[second];
     let (own, other) = (view.body::<L>(first), view.body::<L>(second));
     let pair = Pair { own, other, arm, distance_squared: arm.length_squared() };

@@ -266,7 +266,7 @@ impl<D: Dim> Dem<D> {
             list.push(shown(ShownAs::Number)(&WALL_WORK));
         }
         list.extend(self.wall_catalogue());
-        list.extend(self.traffic_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
+        list.extend(self.exchange_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(self.cell_catalogue());
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
@@ -278,7 +278,7 @@ impl<D: Dim> Dem<D> {
         self.show_wall_forces(sink);
         self.show_wall_numbers(sink);
         for ((name, unit, _), value) in
-            self.traffic_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
+            self.exchange_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
         {
             sink.number(name, unit, value);
         }

@@ -29,12 +29,12 @@ impl<D: Dim> Dem<D> {
             self.clock.save(to);
         }
         self.moving_walls.save(to);
-        self.traffic.save(to);
+        self.inlets.save(to);
     }
 
     /// Whether anything depends on the time.
     fn keeps_time(&self) -> bool {
-        !self.moving_walls.is_empty() || !self.traffic.is_empty()
+        !self.moving_walls.is_empty() || !self.inlets.is_empty()
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -45,7 +45,7 @@ impl<D: Dim> Dem<D> {
         // Not asked of the friction: grains go on turning after it was taken away.
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
         self.take_materials(turning);
-        let (turns, any_number) = (self.pairs.tangential(), !self.traffic.is_empty());
+        let (turns, any_number) = (self.pairs.tangential(), !self.inlets.is_empty());
         self.grains.restore(from, turns, any_number)?;
         let blocks = self.cut();
         self.pairs.resize(blocks);
@@ -74,7 +74,7 @@ impl<D: Dim> Dem<D> {
         }
         self.moving_walls.restore(from)?;
         self.moving_walls.place(self.clock.time());
-        self.traffic.restore(from)?;
+        self.inlets.restore(from)?;
         self.list(0.0, None);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! What the passes over contacts read: grains at one instant, walls, and laws between materials.
 
-use crate::cell::Cell;
 use crate::law::ContactLaw;
+use crate::periodic::PeriodicCell;
 use crate::walls::Wall;
 use granular_core::walls::Pose;
 use granular_core::{Dim, Linear};
@@ -25,7 +25,7 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) walls: &'a [Wall<D>],
     /// Where each wall is; empty when none moves.
     pub(crate) poses: &'a [Pose<D>],
-    pub(crate) cell: Option<&'a Cell<D>>,
+    pub(crate) cell: Option<&'a PeriodicCell<D>>,
     /// The step \[s\]; zero between steps.
     pub(crate) dt: f64,
     /// The last step taken \[s\].

@@ -62,12 +62,12 @@ impl<D: Dim> Dem<D> {
 
     /// Whether grains may still come in through an inlet.
     pub fn brings_grains(&self) -> bool {
-        self.traffic.brings_grains()
+        self.inlets.brings_grains()
     }
 
     /// Whether grains that leave some region are taken out.
     pub fn has_outlets(&self) -> bool {
-        self.traffic.has_outlets()
+        self.inlets.has_outlets()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Contacts of grains with walls of one part.
 
 use crate::kinematics::{kinematics_of, push_of};
-use crate::law::{ContactLaw, Meeting};
+use crate::law::{ContactLaw, Kinematics};
 use crate::lists::BlockList;
 use crate::pass::Kernel;
 use crate::view::{Body, View};
@@ -17,13 +17,13 @@ pub(crate) struct Surface<D: Dim> {
     pub(crate) ball: Option<f64>,
 }
 
-/// The meeting of a grain and a wall, and the lever arm.
+/// The kinematics of a grain and a wall, and the lever arm.
 #[inline(always)]
 pub(crate) fn meet_wall<D: Dim, L: ContactLaw<D>, const MOVING: bool>(
     view: &View<'_, D>,
     first: usize,
     wall: usize,
-) -> Option<(Meeting<D>, f64)> {
+) -> Option<(Kinematics<D>, f64)> {
     let shape = &view.walls[wall].shape;
     let (position, radius) = (view.position[first], view.radius[first]);
     if MOVING {
@@ -36,14 +36,14 @@ pub(crate) fn meet_wall<D: Dim, L: ContactLaw<D>, const MOVING: bool>(
     meet_surface::<D, L>(view, first, &Surface { normal, overlap: radius - distance, ball: None }, None)
 }
 
-/// The meeting of a grain and a piece of surface at rest or in motion, and the lever arm.
+/// The kinematics of a grain and a piece of surface at rest or in motion, and the lever arm.
 #[inline(always)]
 pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     first: usize,
     surface: &Surface<D>,
     pose: Option<&Pose<D>>,
-) -> Option<(Meeting<D>, f64)> {
+) -> Option<(Kinematics<D>, f64)> {
     let Surface { normal, overlap, ball } = *surface;
     let radius = view.radius[first];
     // A wall does not give way: the contact lies on its surface. A held grain does.
@@ -69,10 +69,10 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
         }
         None => D::turn(other.start_spin, normal),
     };
-    let mut meeting = kinematics_of::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap);
-    meeting.effective_mass = view.mass[first];
-    meeting.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
-    (meeting.presence != 0.0).then_some((meeting, arm))
+    let mut kinematics = kinematics_of::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap);
+    kinematics.effective_mass = view.mass[first];
+    kinematics.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
+    (kinematics.presence != 0.0).then_some((kinematics, arm))
 }
 
 impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
@@ -87,14 +87,14 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         self.tally.at_walls();
         for (near, memory) in list.near_walls.iter().zip(&mut list.wall_memory) {
             let (first, wall) = (near.grain as usize, near.wall as usize);
-            let Some((meeting, arm)) = meet_wall::<D, L, MOVING>(view, first, wall) else {
+            let Some((kinematics, arm)) = meet_wall::<D, L, MOVING>(view, first, wall) else {
                 let law = self.laws.between(view.material_of(first), view.walls[wall].material.0);
                 law.release(memory, &mut self.tally);
                 *memory = L::Memory::default();
                 continue;
             };
             let reaction = if MOVING { reactions.get_mut(wall) } else { None };
-            self.push_wall(first, wall, (&meeting, arm), memory, reaction);
+            self.push_wall(first, wall, (&kinematics, arm), memory, reaction);
         }
     }
 
@@ -104,23 +104,23 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         &mut self,
         first: usize,
         wall: usize,
-        (meeting, arm): (&Meeting<D>, f64),
+        (kinematics, arm): (&Kinematics<D>, f64),
         memory: &mut L::Memory,
         reaction: Option<&mut Reaction<D>>,
     ) {
         let view = self.view;
         let law = self.laws.between(view.material_of(first), view.walls[wall].material.0);
-        self.guard(first, meeting.overlap, view.radius[first]);
-        let load = law.load(meeting, memory, &mut self.tally);
+        self.guard(first, kinematics.overlap, view.radius[first]);
+        let load = law.load(kinematics, memory, &mut self.tally);
         let local = first - self.start;
-        let push = push_of::<D, L>(&load, meeting.normal);
+        let push = push_of::<D, L>(&load, kinematics.normal);
         self.force[local] += push;
         if L::TANGENTIAL {
             self.torque[local] += load.rolling - load.tangential * arm;
         }
         if let Some(reaction) = reaction {
             let pose = &view.poses[wall];
-            let (velocity, _) = pose.velocities(view.position[first] - meeting.normal * arm);
+            let (velocity, _) = pose.velocities(view.position[first] - kinematics.normal * arm);
             reaction.force -= push;
             reaction.power += push.dot(velocity) + load.rolling.dot(pose.rate.spin);
         }

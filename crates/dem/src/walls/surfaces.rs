@@ -14,7 +14,7 @@ use super::contact::{Surface, meet_surface};
 use crate::contact::Contact;
 use crate::contact::Partner;
 use crate::contact::contact_of;
-use crate::law::{ContactLaw, Meeting};
+use crate::law::{ContactLaw, Kinematics};
 use crate::lists::Places;
 use crate::pass::Kernel;
 use crate::view::View;
@@ -230,13 +230,13 @@ fn inherit<D: Dim, M: Copy + Default + PartialEq>(old: &mut Vec<Slot<D, M>>, nor
     }
 }
 
-/// The meeting of a grain and a part, and the lever arm.
+/// The kinematics of a grain and a part, and the lever arm.
 fn meet<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     entry: Entry,
     pose: &Pose<D>,
     candidate: &Candidate<D>,
-) -> Option<(Meeting<D>, f64)> {
+) -> Option<(Kinematics<D>, f64)> {
     let ball = facets_of(view.walls, entry.wall).radius(candidate.part as usize);
     let surface = Surface { normal: candidate.normal, overlap: candidate.overlap, ball };
     meet_surface::<D, L>(view, entry.grain as usize, &surface, Some(pose))
@@ -277,12 +277,12 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         for (place, slot) in slots.iter_mut().enumerate() {
             let candidate = next.next_if(|candidate| candidate.place as usize == place);
             let met = candidate.and_then(|candidate| meet::<D, L>(self.view, entry, pose, candidate));
-            if let Some((meeting, arm)) = met {
-                slot.normal = meeting.normal;
+            if let Some((kinematics, arm)) = met {
+                slot.normal = kinematics.normal;
                 self.push_wall(
                     entry.grain as usize,
                     entry.wall as usize,
-                    (&meeting, arm),
+                    (&kinematics, arm),
                     &mut slot.memory,
                     reaction.as_deref_mut(),
                 );
@@ -306,16 +306,16 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         slots.fill(FacetList::fresh());
         let mut used = 0;
         for candidate in candidates {
-            let Some((meeting, arm)) = meet::<D, L>(self.view, entry, pose, candidate) else { continue };
-            let mut memory = inherit(old, meeting.normal);
+            let Some((kinematics, arm)) = meet::<D, L>(self.view, entry, pose, candidate) else { continue };
+            let mut memory = inherit(old, kinematics.normal);
             self.push_wall(
                 entry.grain as usize,
                 entry.wall as usize,
-                (&meeting, arm),
+                (&kinematics, arm),
                 &mut memory,
                 reaction.as_deref_mut(),
             );
-            slots[used] = Slot { normal: meeting.normal, memory };
+            slots[used] = Slot { normal: kinematics.normal, memory };
             used += 1;
         }
         old.iter_mut().for_each(|slot| self.end(entry, slot));
@@ -349,16 +349,16 @@ pub(crate) fn visit<D: Dim, L: ContactLaw<D>>(
         let mut old: Vec<_> =
             slots.iter().filter(|slot| slot.memory != L::Memory::default()).copied().collect();
         for candidate in candidates.iter().filter(|candidate| candidate.overlap > 0.0) {
-            let Some((meeting, _)) = meet::<D, L>(view, entry, &pose, candidate) else { continue };
+            let Some((kinematics, _)) = meet::<D, L>(view, entry, &pose, candidate) else { continue };
             let memory = if balls {
                 slots[candidate.place as usize].memory
             } else {
-                inherit(&mut old, meeting.normal)
+                inherit(&mut old, kinematics.normal)
             };
             let (first, wall) = (entry.grain as usize, entry.wall as usize);
             let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-            let branch = meeting.normal * (view.radius[first] - meeting.overlap);
-            visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
+            let branch = kinematics.normal * (view.radius[first] - kinematics.overlap);
+            visit(contact_of::<D, L>(law, &kinematics, memory, (first, Partner::Wall(wall)), branch));
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::sample::{Lattice, Random, free};
 use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, Linear, Section, Solver, Vector, contract_tests};
 use granular_dem::{
-    Cell, CellControl, Control, Dem, Dem2, Grain, Material, Materials, Matrix, Options, SetupError,
+    CellControl, Control, Dem, Dem2, Grain, Material, Materials, Matrix, Options, PeriodicCell, SetupError,
 };
 
 fn short_lists() -> Options {
@@ -18,7 +18,7 @@ fn filled<D: Dim>(lattice: Lattice, material: Material, options: Options) -> Dem
     let mut dem = free::<D>(materials, lattice.grains::<D>(&[glass]), options);
     let side = lattice.spacing * lattice.side as f64;
     let size = (0..D::N).fold(D::Vec::ZERO, |sum, axis| sum + D::Vec::along(axis, side));
-    dem.set_cell(Cell::new(D::Vec::ZERO, size, &vec![true; D::N]).unwrap()).unwrap();
+    dem.set_cell(PeriodicCell::new(D::Vec::ZERO, size, &vec![true; D::N]).unwrap()).unwrap();
     dem
 }
 
@@ -111,7 +111,7 @@ fn shifted(offset: DVec2, tilt: f64) -> Dem2 {
         (a, b) if a == b => 12e-3,
         _ => 0.0,
     });
-    dem.set_cell(Cell::with_edges(DVec2::ZERO, edges, &[true, true]).unwrap()).unwrap();
+    dem.set_cell(PeriodicCell::with_edges(DVec2::ZERO, edges, &[true, true]).unwrap()).unwrap();
     dem.control_cell(shear(500.0).with(1, 1, Control::Stress(2e4))).unwrap();
     dem
 }
@@ -162,7 +162,7 @@ fn meeting_in_shear(dt: f64, time: f64) -> f64 {
     let in_cell = vec![Grain::at(a, 0.5e-3, glass).moving(ua), Grain::at(b, 0.5e-3, glass).moving(ub)];
     let mut outside = free::<D2>(materials.clone(), free_pair, Options::default());
     let mut inside = free::<D2>(materials, in_cell, Options::default());
-    inside.set_cell(Cell::new(DVec2::ZERO, DVec2::splat(edge), &[true, true]).unwrap()).unwrap();
+    inside.set_cell(PeriodicCell::new(DVec2::ZERO, DVec2::splat(edge), &[true, true]).unwrap()).unwrap();
     inside.control_cell(shear(rate)).unwrap();
     let steps = (time / dt).round() as u64;
     outside.advance(dt, steps).unwrap();
@@ -240,18 +240,18 @@ fn what_does_not_fit_is_refused() -> Result<(), SetupError> {
     let mut materials = Materials::new();
     let glass = materials.add(Material::default())?;
     let mut dem = free::<D2>(materials, narrow.grains::<D2>(&[glass]), Options::default());
-    let cell = |size: f64| Cell::<D2>::new(DVec2::ZERO, DVec2::splat(size), &[true, true]);
+    let cell = |size: f64| PeriodicCell::<D2>::new(DVec2::ZERO, DVec2::splat(size), &[true, true]);
     assert!(dem.control_cell(shear(1.0)).unwrap_err().to_string().contains("periodic cells"));
     let error = dem.set_cell(cell(1.7e-3)?).unwrap_err().to_string();
     assert!(error.contains("width of the cell"), "{error}");
-    assert!(Cell::<D2>::new(DVec2::ZERO, DVec2::ONE, &[false, false]).is_err());
+    assert!(PeriodicCell::<D2>::new(DVec2::ZERO, DVec2::ONE, &[false, false]).is_err());
     assert!(cell(-1.0).is_err() && cell(f64::NAN).is_err());
     dem.set_cell(cell(3e-3)?)?;
     dem.control_cell(CellControl::default().with(0, 0, Control::Rate(-4000.0)))?;
     let error = dem.advance(1e-6, 1000).unwrap_err().to_string();
     assert!(error.contains("width of the cell") || error.contains("overlap"), "{error}");
     let mut chute = free::<D2>(Materials::new(), vec![], Options::default());
-    chute.set_cell(Cell::new(DVec2::ZERO, DVec2::ONE, &[true, false])?)?;
+    chute.set_cell(PeriodicCell::new(DVec2::ZERO, DVec2::ONE, &[true, false])?)?;
     assert!(chute.control_cell(CellControl::isotropic::<D2>(1.0)).is_err());
     Ok(())
 }

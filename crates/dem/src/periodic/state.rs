@@ -1,10 +1,10 @@
 //! What a snapshot holds of a cell.
 
-use super::{Cell, CellControl, Control, Matrix};
+use super::{CellControl, Control, Matrix, PeriodicCell};
 use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Section, SnapshotError};
 
-impl<D: Dim> Cell<D> {
+impl<D: Dim> PeriodicCell<D> {
     pub(crate) fn save(&self, to: &mut Section) {
         for (name, matrix) in [
             ("cell edges", &self.edges),

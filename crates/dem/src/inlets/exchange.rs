@@ -1,20 +1,13 @@
-//! Grains that come and go while a simulation runs.
-//!
-//! Both happen between steps, at fixed counts of steps, so that a split or a restart changes nothing. Places and
-//! sizes are drawn from the seed and the number of the grain, never from a stream: there is no random state.
+//! What inlets and outlets do to a solver.
 
+use super::room::{Ball, Room};
+use super::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK, Source};
 use crate::dem::Dem;
 use crate::grains::{Grain, check, check_sizes};
-use crate::material::{MaterialId, SetupError};
+use crate::material::SetupError;
 use granular_core::random::uniform_at;
-use granular_core::snapshot::check_entry;
-use granular_core::{Dim, Linear, Section, SnapshotError, Vector};
-use room::{Ball, Room};
+use granular_core::{Dim, Linear, Vector};
 
-mod room;
-
-/// Steps between two looks at what inlets and outlets have to do.
-pub const STEPS_PER_LOOK: u64 = 100;
 /// Places tried for one grain.
 const TRIES: u64 = 100;
 /// Shown numbers.
@@ -27,184 +20,6 @@ const NUMBERS: [(&str, &str, &str); 7] = [
     ("mass_removed", "kg", "mass taken out since the start"),
     ("energy_exchanged", "J", "energy that came with grains, less what left with them; with the ledger only"),
 ];
-
-/// A place where grains are put in, at a rate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Inlet<D: Dim> {
-    /// Name.
-    pub name: String,
-    /// Lower corner of the box in which whole grains are placed \[m\].
-    pub low: D::Vec,
-    /// Upper corner \[m\].
-    pub high: D::Vec,
-    /// Grains per time \[1/s\].
-    pub rate: f64,
-    /// Grains in all, those that do not fit included.
-    pub number: u64,
-    /// Radii, each as likely as any other \[m\].
-    pub radii: Vec<f64>,
-    /// Velocity at which they come \[m/s\].
-    pub velocity: D::Vec,
-    /// Material.
-    pub material: MaterialId,
-    /// Random seed.
-    pub seed: u64,
-    /// Whether it runs from the start.
-    pub runs: bool,
-}
-
-/// Where grains are taken out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outlet<D: Dim> {
-    /// Where the centre is beyond a plane, on the side to which the normal points.
-    Beyond {
-        /// A point of the plane \[m\].
-        point: D::Vec,
-        /// Normal, of any length.
-        normal: D::Vec,
-    },
-    /// Where the centre is outside a box.
-    Outside {
-        /// Lower corner \[m\].
-        low: D::Vec,
-        /// Upper corner \[m\].
-        high: D::Vec,
-    },
-}
-
-impl<D: Dim> Outlet<D> {
-    fn takes(&self, at: D::Vec) -> bool {
-        match *self {
-            Self::Beyond { point, normal } => (at - point).dot(normal) > 0.0,
-            Self::Outside { low, high } => at.max(low).min(high) != at,
-        }
-    }
-}
-
-/// Grains that came and went.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Exchanged {
-    /// Grains put in.
-    pub inserted: u64,
-    /// Grains that were due but did not fit in.
-    pub not_placed: u64,
-    /// Grains taken out.
-    pub removed: u64,
-    /// Mass put in \[kg; kg/m in the plane\].
-    pub mass_inserted: f64,
-    /// Mass taken out \[kg; kg/m in the plane\].
-    pub mass_removed: f64,
-    /// Energy that came with grains, less what left with them \[J\]; zero unless the ledger is kept.
-    pub energy: f64,
-}
-
-/// An inlet and what it has done.
-#[derive(Clone, Debug)]
-struct Source<D: Dim> {
-    inlet: Inlet<D>,
-    /// Time for which it ran before it was last started \[s\].
-    before: f64,
-    /// When it was last started \[s\]; not a number while it does not run.
-    since: f64,
-    /// Grains that were due so far.
-    tried: u64,
-}
-
-impl<D: Dim> Source<D> {
-    fn elapsed(&self, time: f64) -> f64 {
-        if self.since.is_nan() { self.before } else { self.before + (time - self.since) }
-    }
-
-    /// Grains that are due now.
-    fn due(&self, time: f64) -> u64 {
-        let all = (self.inlet.rate * self.elapsed(time)).floor() as u64;
-        all.min(self.inlet.number).saturating_sub(self.tried)
-    }
-}
-
-/// Where grains come and go; nothing in most scenes.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Traffic<D: Dim> {
-    sources: Vec<Source<D>>,
-    outlets: Vec<Outlet<D>>,
-    next_id: u32,
-    done: Exchanged,
-}
-
-impl<D: Dim> Traffic<D> {
-    pub(crate) fn new(grains: usize) -> Self {
-        Self { sources: Vec::new(), outlets: Vec::new(), next_id: grains as u32, done: Exchanged::default() }
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.sources.is_empty() && self.outlets.is_empty()
-    }
-
-    /// Whether an inlet has grains left, now or when it is started.
-    pub(crate) fn brings_grains(&self) -> bool {
-        self.sources.iter().any(|source| source.tried < source.inlet.number)
-    }
-
-    /// Inlets and outlets.
-    pub(crate) fn doors(&self) -> usize {
-        self.sources.len() + self.outlets.len()
-    }
-
-    pub(crate) fn has_outlets(&self) -> bool {
-        !self.outlets.is_empty()
-    }
-
-    pub(crate) fn inlets(&self) -> impl Iterator<Item = &Inlet<D>> {
-        self.sources.iter().map(|source| &source.inlet)
-    }
-
-    pub(crate) fn save(&self, to: &mut Section) {
-        if self.is_empty() {
-            return;
-        }
-        let clocks: Vec<[f64; 3]> = self
-            .sources
-            .iter()
-            .map(|source| {
-                let runs = !source.since.is_nan();
-                [f64::from(u8::from(runs)), source.before, if runs { source.since } else { 0.0 }]
-            })
-            .collect();
-        let tried: Vec<u64> = self.sources.iter().map(|source| source.tried).collect();
-        let Exchanged { inserted, not_placed, removed, mass_inserted, mass_removed, energy } = self.done;
-        to.put("clocks of inlets", &clocks);
-        to.put("grains due", &tried);
-        to.put_one("next identifier", self.next_id);
-        to.put("grains exchanged", &[inserted, not_placed, removed]);
-        to.put("mass and energy exchanged", &[mass_inserted, mass_removed, energy]);
-    }
-
-    pub(crate) fn restore(&mut self, from: &Section) -> Result<(), SnapshotError> {
-        if self.is_empty() {
-            return Ok(());
-        }
-        let clocks: Vec<[f64; 3]> = from.array_of("clocks of inlets", self.sources.len())?;
-        check_entry("clocks of inlets", clocks.iter().flatten().all(|value| value.is_finite()))?;
-        let tried: Vec<u64> = from.array_of("grains due", self.sources.len())?;
-        for ((source, [runs, before, since]), tried) in self.sources.iter_mut().zip(clocks).zip(tried) {
-            (source.before, source.tried) = (before, tried);
-            source.since = if runs == 0.0 { f64::NAN } else { since };
-        }
-        self.next_id = from.one("next identifier")?;
-        let counts: Vec<u64> = from.array_of("grains exchanged", 3)?;
-        let sums: Vec<f64> = from.array_of("mass and energy exchanged", 3)?;
-        check_entry("mass and energy exchanged", sums.iter().all(|sum| sum.is_finite()))?;
-        self.done = Exchanged {
-            inserted: counts[0],
-            not_placed: counts[1],
-            removed: counts[2],
-            mass_inserted: sums[0],
-            mass_removed: sums[1],
-            energy: sums[2],
-        };
-        Ok(())
-    }
-}
 
 impl<D: Dim> Dem<D> {
     /// Lets grains come in from now on, at every hundredth step.
@@ -220,7 +35,7 @@ impl<D: Dim> Dem<D> {
         }
         self.grains.expect_material(*material);
         let since = if *runs { self.time() } else { f64::NAN };
-        self.traffic.sources.push(Source { inlet, before: 0.0, since, tried: 0 });
+        self.inlets.sources.push(Source { inlet, before: 0.0, since, tried: 0 });
         Ok(())
     }
 
@@ -243,7 +58,7 @@ impl<D: Dim> Dem<D> {
             ));
         }
         self.refuse_cell()?;
-        self.traffic.outlets.push(outlet);
+        self.inlets.outlets.push(outlet);
         Ok(())
     }
 
@@ -259,7 +74,7 @@ impl<D: Dim> Dem<D> {
     pub fn set_inlet(&mut self, name: &str, runs: bool) -> bool {
         let time = self.time();
         let mut found = false;
-        for source in self.traffic.sources.iter_mut().filter(|source| source.inlet.name == name) {
+        for source in self.inlets.sources.iter_mut().filter(|source| source.inlet.name == name) {
             found = true;
             if runs == source.since.is_nan() {
                 source.before = source.elapsed(time);
@@ -271,7 +86,7 @@ impl<D: Dim> Dem<D> {
 
     /// Grains that came and went since the start.
     pub fn exchanged(&self) -> Exchanged {
-        self.traffic.done
+        self.inlets.done
     }
 
     fn check_inlet(&self, inlet: &Inlet<D>) -> Result<(), SetupError> {
@@ -308,7 +123,7 @@ impl<D: Dim> Dem<D> {
 
     /// Whether a look is due when so many more steps are taken.
     pub(crate) fn looks_after(&self, steps: u64) -> bool {
-        !self.traffic.is_empty() && (self.steps + steps).is_multiple_of(STEPS_PER_LOOK)
+        !self.inlets.is_empty() && (self.steps + steps).is_multiple_of(STEPS_PER_LOOK)
     }
 
     /// Lets grains come and go when the count of steps says so.
@@ -330,13 +145,13 @@ impl<D: Dim> Dem<D> {
         if let Some(before) = before {
             let gain = self.energies().mechanical() - before;
             self.injected += gain;
-            self.traffic.done.energy += gain;
+            self.inlets.done.energy += gain;
         }
     }
 
     /// Whether any grain is to go, and takes them out when told to.
     fn remove(&mut self, really: bool) -> bool {
-        let outlets = &self.traffic.outlets;
+        let outlets = &self.inlets.outlets;
         let goes = |at: D::Vec| outlets.iter().any(|outlet| outlet.takes(at));
         if !really {
             return self.grains.position.iter().any(|&at| goes(at));
@@ -349,8 +164,8 @@ impl<D: Dim> Dem<D> {
                 place[index] = kept;
                 kept += 1;
             } else {
-                self.traffic.done.removed += 1;
-                self.traffic.done.mass_removed += self.grains.mass[index];
+                self.inlets.done.removed += 1;
+                self.inlets.done.mass_removed += self.grains.mass[index];
             }
         }
         self.grains.retain(&stays);
@@ -362,22 +177,22 @@ impl<D: Dim> Dem<D> {
     fn insert(&mut self, really: bool) -> bool {
         let time = self.time();
         if !really {
-            return self.traffic.sources.iter().any(|source| source.due(time) > 0);
+            return self.inlets.sources.iter().any(|source| source.due(time) > 0);
         }
         let place: Vec<u32> = (0..self.len() as u32).collect();
-        for index in 0..self.traffic.sources.len() {
-            let source = &self.traffic.sources[index];
+        for index in 0..self.inlets.sources.len() {
+            let source = &self.inlets.sources[index];
             let (first, due) = (source.tried, source.due(time));
             let inlet = source.inlet.clone();
-            self.traffic.sources[index].tried += due;
+            self.inlets.sources[index].tried += due;
             let mut near = Room::of(&inlet, self.near(&inlet));
             for number in first..first + due {
                 match self.fit(&inlet, number, &near) {
-                    Some(grain) if self.traffic.next_id < u32::MAX => {
+                    Some(grain) if self.inlets.next_id < u32::MAX => {
                         near.add(grain.position, grain.radius);
                         self.put_in(&grain);
                     }
-                    _ => self.traffic.done.not_placed += 1,
+                    _ => self.inlets.done.not_placed += 1,
                 }
             }
         }
@@ -417,17 +232,17 @@ impl<D: Dim> Dem<D> {
     fn put_in(&mut self, grain: &Grain<D>) {
         let mass = self.materials.get(grain.material).density * D::ball_volume(grain.radius);
         let turns = self.pairs.tangential();
-        self.grains.push(grain, (self.traffic.next_id, mass, self.gravity), turns);
-        self.traffic.next_id += 1;
-        self.traffic.done.inserted += 1;
-        self.traffic.done.mass_inserted += mass;
+        self.grains.push(grain, (self.inlets.next_id, mass, self.gravity), turns);
+        self.inlets.next_id += 1;
+        self.inlets.done.inserted += 1;
+        self.inlets.done.mass_inserted += mass;
     }
 
-    pub(crate) fn traffic_numbers(
+    pub(crate) fn exchange_numbers(
         &self,
     ) -> impl Iterator<Item = ((&'static str, &'static str, &'static str), f64)> {
         let Exchanged { inserted, not_placed, removed, mass_inserted, mass_removed, energy } =
-            self.traffic.done;
+            self.inlets.done;
         let count = |number: u64| number as f64;
         let values = [
             self.len() as f64,
@@ -438,7 +253,7 @@ impl<D: Dim> Dem<D> {
             mass_removed,
             energy,
         ];
-        let shown = if self.traffic.is_empty() { 0 } else { NUMBERS.len() };
+        let shown = if self.inlets.is_empty() { 0 } else { NUMBERS.len() };
         NUMBERS.into_iter().zip(values).take(shown)
     }
 }

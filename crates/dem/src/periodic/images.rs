@@ -1,7 +1,7 @@
 //! Contacts across the faces of a periodic cell: lists, memories and loads, apart from those of
 //! ordinary pairs, so that a scene without a cell has none of it.
 
-use super::{Cell, Shift};
+use super::{PeriodicCell, Shift};
 use crate::kinematics::{Pair, push_of};
 use crate::law::ContactLaw;
 use crate::lists::{BlockList, Receipt, spare};
@@ -47,7 +47,7 @@ pub(crate) struct Bounds<D: Dim> {
 }
 
 impl<D: Dim> Bounds<D> {
-    pub(crate) fn of(cell: &Cell<D>, positions: &[D::Vec]) -> Self {
+    pub(crate) fn of(cell: &PeriodicCell<D>, positions: &[D::Vec]) -> Self {
         let shares = cell.edges.inverse();
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &position in positions {
@@ -61,7 +61,7 @@ impl<D: Dim> Bounds<D> {
     }
 
     /// Whether anything can be within `reach` \[m\] of the image of `position` under the opposite of `shift`.
-    fn near(&self, cell: &Cell<D>, position: D::Vec, shift: Shift, reach: f64) -> bool {
+    fn near(&self, cell: &PeriodicCell<D>, position: D::Vec, shift: Shift, reach: f64) -> bool {
         let share = self.shares.apply(position);
         (0..D::N).filter(|&axis| cell.periodic[axis]).all(|axis| {
             let place = share.component(axis) - f64::from(shift[axis]);
@@ -75,7 +75,7 @@ impl<D: Dim> Bounds<D> {
 #[derive(Clone, Copy)]
 pub(crate) struct Near<'a, D: Dim, S> {
     pub(crate) view: &'a View<'a, D>,
-    pub(crate) cell: &'a Cell<D>,
+    pub(crate) cell: &'a PeriodicCell<D>,
     pub(crate) search: &'a S,
     pub(crate) bounds: &'a Bounds<D>,
     pub(crate) skin: f64,
@@ -279,7 +279,7 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
     /// The contacts of a block across faces of the cell; `owed` counts what its ordinary pairs owe.
     pub(crate) fn images(
         &mut self,
-        cell: &Cell<D>,
+        cell: &PeriodicCell<D>,
         list: &mut ImageList<D, L::Memory>,
         outgoing: &mut [Owed<D>],
     ) {
@@ -292,10 +292,10 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
             let laws = self.laws;
             let law = laws.between(view.material_of(first), view.material_of(second));
             let mut given = Owed::default();
-            if let Some((meeting, arms, overlap)) = met {
+            if let Some((kinematics, arms, overlap)) = met {
                 self.guard(first, overlap, view.radius[first].min(view.radius[second]));
-                let load = law.load(&meeting, memory, &mut self.tally);
-                let on_first = push_of::<D, L>(&load, meeting.normal);
+                let load = law.load(&kinematics, memory, &mut self.tally);
+                let on_first = push_of::<D, L>(&load, kinematics.normal);
                 for axis in 0..D::N {
                     list.pull[axis] += on_first * f64::from(pair.shift[axis]);
                 }
@@ -323,13 +323,13 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
     }
 }
 
-type MetImage<D> = (crate::law::Meeting<D>, (f64, f64), f64);
+type MetImage<D> = (crate::law::Kinematics<D>, (f64, f64), f64);
 
-/// The meeting of a grain and an image with surfaces nearer than `margin`, their lever arms and the overlap.
+/// The kinematics of a grain and an image with surfaces nearer than `margin`, their lever arms and the overlap.
 #[inline(always)]
 pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
-    cell: &Cell<D>,
+    cell: &PeriodicCell<D>,
     pair: &ImagePair,
     margin: f64,
 ) -> Option<MetImage<D>> {
@@ -350,6 +350,6 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     other.velocity += rate;
     other.start_velocity += start_rate;
     let pair = Pair { own: view.body::<L>(first), other, arm, distance_squared: squared };
-    let (meeting, arms) = pair.meet::<L>(view);
-    (meeting.presence != 0.0).then(|| (meeting, arms, pair.overlap()))
+    let (kinematics, arms) = pair.meet::<L>(view);
+    (kinematics.presence != 0.0).then(|| (kinematics, arms, pair.overlap()))
 }

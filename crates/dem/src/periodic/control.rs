@@ -1,6 +1,6 @@
 //! What drives a cell: a rate or a stress for each component of its velocity gradient.
 
-use super::{Cell, Matrix};
+use super::{Matrix, PeriodicCell};
 use crate::material::SetupError;
 use granular_core::Dim;
 
@@ -60,7 +60,7 @@ impl CellControl {
         self.component.iter().flatten().any(|control| *control != Control::Rate(0.0))
     }
 
-    pub(crate) fn check<D: Dim>(&self, cell: &Cell<D>) -> Result<(), SetupError> {
+    pub(crate) fn check<D: Dim>(&self, cell: &PeriodicCell<D>) -> Result<(), SetupError> {
         for row in 0..3 {
             for column in 0..3 {
                 let control = self.component[row][column];
@@ -97,7 +97,7 @@ impl CellControl {
     }
 }
 
-impl<D: Dim> Cell<D> {
+impl<D: Dim> PeriodicCell<D> {
     /// Sets the gradient to the rates that are given; components under stress keep what they have.
     pub(crate) fn take_rates(&mut self) {
         let (control, gradient) = (self.control, self.gradient);

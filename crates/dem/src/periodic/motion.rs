@@ -13,25 +13,16 @@
 //! images to round-off, and the change of kinetic energy is exactly that of forces and of `-L u` at the
 //! mean velocity.
 
-use super::{Cell, Matrix};
+use super::{Matrix, PeriodicCell, Sums};
 use crate::contacts::Pairs;
 use crate::grains::Grains;
 use crate::motion::order_of;
 use granular_core::{Blocks, Dim, Linear, PerBlock};
 
-/// Sums over the grains of a block.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sums<D: Dim> {
-    /// Force times place plus momentum times velocity \[J\].
-    pub(crate) virial: Matrix<D>,
-    /// Mass times place \[kg m\].
-    pub(crate) moment: D::Vec,
-}
-
 /// First half of a step: drift, and predict the velocity at the middle, now that of the laboratory.
 pub(crate) fn open_step<D: Dim>(
     grains: &mut Grains<D>,
-    cell: &mut Cell<D>,
+    cell: &mut PeriodicCell<D>,
     blocks: Blocks,
     [last_dt, dt]: [f64; 2],
     speeds: &mut [u64],
@@ -87,7 +78,7 @@ pub(crate) fn open_step<D: Dim>(
 /// sums over all grains. For a cell that deforms; [`crate::motion`] closes steps of others.
 pub(crate) fn close_step<D: Dim>(
     grains: &mut Grains<D>,
-    cell: &mut Cell<D>,
+    cell: &mut PeriodicCell<D>,
     pairs: &dyn Pairs<D>,
     blocks: Blocks,
     gravity: D::Vec,

@@ -1,7 +1,7 @@
 //! A solver in a periodic cell: its set-up, its step, and putting grains back inside.
 
 use super::images::Moved;
-use super::{Cell, CellControl, Matrix, Shift, motion};
+use super::{CellControl, Matrix, PeriodicCell, Shift, motion};
 use crate::dem::{Dem, view_of};
 use crate::material::{PairProperties, SetupError};
 use crate::view::View;
@@ -23,14 +23,14 @@ impl<D: Dim> Dem<D> {
     ///
     /// # Errors
     /// When the cell is too narrow for its grains.
-    pub fn set_cell(&mut self, cell: Cell<D>) -> Result<(), SetupError> {
+    pub fn set_cell(&mut self, cell: PeriodicCell<D>) -> Result<(), SetupError> {
         let needed = NARROWEST * self.pair_reach();
         if cell.narrowest() < needed {
             let ratio = cell.narrowest() / self.pair_reach();
             return Err(SetupError::new("width of the cell over the reach of a pair", ratio, "at least 1.5"));
         }
-        if !self.traffic.is_empty() {
-            let count = self.traffic.doors() as f64;
+        if !self.inlets.is_empty() {
+            let count = self.inlets.doors() as f64;
             return Err(SetupError::new("number of inlets and outlets beside a periodic cell", count, "0"));
         }
         let shares = cell.edges.inverse();
@@ -50,7 +50,7 @@ impl<D: Dim> Dem<D> {
     }
 
     /// The periodic cell, if there is one.
-    pub fn cell(&self) -> Option<&Cell<D>> {
+    pub fn cell(&self) -> Option<&PeriodicCell<D>> {
         self.cell.as_deref()
     }
 
@@ -256,7 +256,7 @@ impl<D: Dim> Dem<D> {
     }
 }
 
-impl<D: Dim> Cell<D> {
+impl<D: Dim> PeriodicCell<D> {
     /// Takes whole edges off others that lean on them too far. `Some(mixed)` when any was: `mixed[k][l]` of
     /// edge `l` were taken off edge `k`.
     fn flip(&mut self) -> Option<[[i8; 3]; 3]> {

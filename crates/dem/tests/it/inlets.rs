@@ -132,7 +132,7 @@ fn grains_come_at_the_rate_without_overlap_and_all_are_counted() {
     assert!((start + done.mass_inserted - done.mass_removed - mass(&dem)).abs() < 1e-12 * start);
     let turnover = dem.energies().mechanical() + dem.losses().total();
     let residual = dem.energy_residual().unwrap().abs() / turnover;
-    println!("traffic: {done:?}, residual {residual:.1e}");
+    println!("inlets and outlets: {done:?}, residual {residual:.1e}");
     assert!(residual < 1e-3, "{residual:e}");
 }
 

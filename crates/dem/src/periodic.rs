@@ -38,7 +38,7 @@ pub type Shift = [i8; 3];
 
 /// A periodic cell.
 #[derive(Clone, Debug)]
-pub struct Cell<D: Dim> {
+pub struct PeriodicCell<D: Dim> {
     pub(crate) low: D::Vec,
     /// Edges; unit vectors along axes that are not periodic.
     pub(crate) edges: Matrix<D>,
@@ -63,10 +63,19 @@ pub struct Cell<D: Dim> {
     /// Scratch: laboratory velocities at the start of a step.
     pub(crate) start_velocity: Vec<D::Vec>,
     /// Scratch: one sum per block.
-    pub(crate) sums: Vec<motion::Sums<D>>,
+    pub(crate) sums: Vec<Sums<D>>,
 }
 
-impl<D: Dim> Cell<D> {
+/// Sums over the grains of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sums<D: Dim> {
+    /// Force times place plus momentum times velocity \[J\].
+    pub(crate) virial: Matrix<D>,
+    /// Mass times place \[kg m\].
+    pub(crate) moment: D::Vec,
+}
+
+impl<D: Dim> PeriodicCell<D> {
     /// A cell at rest with edges along the axes: lowest corner `low` and size \[m\], and which
     /// axes are periodic. Corner and size of other axes have no meaning.
     ///
