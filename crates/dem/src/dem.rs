@@ -56,6 +56,8 @@ pub struct Dem<D: Dim> {
     skin: f64,
     /// Reach of the present lists \[m\].
     pub(crate) reach: f64,
+    /// Largest radius when the lists were built \[m\].
+    pub(crate) largest: f64,
     /// Bound on how far any grain moved since the lists were built \[m\].
     pub(crate) travel: f64,
     pub(crate) speeds: Vec<u64>,
@@ -126,6 +128,7 @@ impl<D: Dim> Dem<D> {
             steps: 0,
             last_dt: 0.0,
             custom_law,
+            largest: 0.0,
             travel: 0.0,
         };
         dem.list(0.0, None);
@@ -231,7 +234,8 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.reach_for(stride);
         self.travel = 0.0;
-        let (_, largest) = self.grains.radius_range();
+        self.largest = self.grains.radius_range().1;
+        let largest = self.largest;
         self.moving_walls.note_distances(&self.grains.position, 2.0 * self.reach + largest);
         let view = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
         self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
@@ -242,7 +246,7 @@ impl<D: Dim> Dem<D> {
     /// A long list is read in every step, a short one is built often: with the reach `r` the one costs `a r` and the
     /// other `b stride / r`, least together at `r^2 = b/a stride`, where `b/a` was measured as ten
     /// diameters. A stride near the skin (a shot) widens the reach so that the list serves for another step.
-    fn reach_for(&self, stride: f64) -> f64 {
+    pub(crate) fn reach_for(&self, stride: f64) -> f64 {
         let longest = self.skin;
         let best = (10.0 * longest / self.options.skin * stride).sqrt();
         let reach = if stride > 0.0 { best.clamp(SHORTEST * longest, longest) } else { longest };
@@ -333,10 +337,7 @@ impl<D: Dim> Solver for Dem<D> {
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);
-        self.blocks.inside_pool(|| match self.cell {
-            Some(_) => self.advance_in_cell(dt, steps),
-            None => self.advance_in_the_open(dt, steps),
-        })
+        self.blocks.inside_pool(|| self.take_steps(dt, steps))
     }
 
     fn location(&self) -> Location<'_> {

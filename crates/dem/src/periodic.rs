@@ -22,7 +22,7 @@
 
 mod control;
 pub(crate) mod images;
-mod motion;
+pub(crate) mod motion;
 mod show;
 mod state;
 mod step;

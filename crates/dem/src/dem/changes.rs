@@ -74,14 +74,12 @@ impl<D: Dim> Dem<D> {
 }
 
 impl<D: Dim> Dem<D> {
-    /// Starts a shaking, or ends it.
+    /// Starts a shaking, or ends it. In a periodic cell all images are shaken alike: what is at rest relative to the flow
+    /// of the cell gains the same velocity.
     ///
     /// # Errors
-    /// When a value is out of range, or the grains are in a periodic cell.
+    /// When a value is out of range.
     pub fn set_shaking(&mut self, shaking: Option<Shaking<D>>) -> Result<(), SetupError> {
-        if shaking.is_some() && self.cell.is_some() {
-            return Err(SetupError::new("number of periodic cells that are shaken", 1.0, "0"));
-        }
         shaking.iter().try_for_each(Shaking::check)?;
         self.shaken = shaking.map(|shaking| Shaken { shaking, age: 0.0 });
         Ok(())

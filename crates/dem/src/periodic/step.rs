@@ -2,9 +2,8 @@
 
 use super::images::Moved;
 use super::{CellControl, Matrix, PeriodicCell, Shift, motion};
-use crate::dem::{Dem, view_of};
+use crate::dem::Dem;
 use crate::material::{PairProperties, SetupError};
-use crate::view::View;
 use granular_core::{Dim, Linear, StepError, Vector};
 
 /// The narrowest cell over the reach of a pair: no grain may see an image of itself, and no image
@@ -101,97 +100,37 @@ impl<D: Dim> Dem<D> {
 
     /// Centres farther apart than this are in no list \[m\].
     fn pair_reach(&self) -> f64 {
-        2.0 * self.largest_radius() + self.reach
+        2.0 * self.largest + self.reach
     }
 
-    fn largest_radius(&self) -> f64 {
-        self.grains.radius.iter().fold(0.0, |a: f64, &b| a.max(b))
+    /// How far the flow of the cell moves near surfaces past each other in a step \[m\]; nothing without a cell.
+    pub(crate) fn stride_of_flow(&self, dt: f64) -> f64 {
+        let Some(cell) = self.cell.as_deref() else { return 0.0 };
+        0.5 * cell.gradient.norm() * (2.0 * self.largest + self.reach) * dt
     }
 
-    /// Steps of a solver in a cell.
-    pub(crate) fn advance_in_cell(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
-        let largest = self.largest_radius();
-        for _ in 0..steps {
-            self.sort_if_due();
-            self.tend_cell();
-            let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
-            let steps = [self.last_dt, dt];
-            motion::open_step(&mut self.grains, cell, self.blocks, steps, &mut self.speeds);
-            self.load_in_cell(dt, largest)?;
-        }
-        self.moving_walls.place(self.clock.time());
-        Ok(())
-    }
-
-    /// One step between its two halves.
-    fn load_in_cell(&mut self, dt: f64, largest: f64) -> Result<(), StepError> {
-        let mut own = crate::motion::fastest(&self.speeds) * dt;
-        if !self.moving_walls.is_empty() {
-            own = own.max(self.moving_walls.fastest(dt) * dt);
-            self.moving_walls.place_in_step(self.clock.time(), dt);
-        }
+    /// Books that grains moved so far by themselves \[m\]; `stride` counts the flow as well.
+    pub(crate) fn drift_in_cell(&mut self, own: f64, stride: f64) -> Result<(), StepError> {
+        let (largest, reach) = (self.largest, self.reach);
         let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
-        let flow = 0.5 * cell.gradient.norm() * (2.0 * largest + self.reach) * dt;
-        let stride = own + flow;
-        if !(stride.is_finite() && cell.edges.is_finite()) {
-            return Err(self.not_finite());
-        }
         cell.drift += own;
-        let (narrowest, needed) =
-            (cell.narrowest(), NARROWEST * (2.0 * largest + self.reach.max(4.0 * stride)));
-        if narrowest < needed {
-            return Err(too_narrow(narrowest, needed));
-        }
-        self.travel += stride;
-        if 2.0 * self.travel + stride > self.reach {
-            self.list(stride, None);
-        }
-        self.push_in_cell(dt, stride);
-        self.last_dt = dt;
-        if !self.moving_walls.is_empty() {
-            self.move_walls(dt);
-        }
-        let (losses, trouble) = self.pairs.outcome();
-        self.close_in_cell(dt);
-        self.steps += 1;
-        self.clock.step();
-        self.losses += losses;
-        trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
+        let (narrowest, needed) = (cell.narrowest(), NARROWEST * (2.0 * largest + reach.max(4.0 * stride)));
+        if narrowest < needed { Err(too_narrow(narrowest, needed)) } else { Ok(()) }
     }
 
-    fn push_in_cell(&mut self, dt: f64, margin: f64) {
-        let mut force = std::mem::take(&mut self.grains.acceleration);
-        let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let seen = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
-        let started = self.cell.as_deref().map(|cell| cell.start_velocity.as_slice());
-        let view = View {
-            velocity: &self.grains.middle_velocity,
-            spin: &self.grains.middle_spin,
-            start_velocity: started.filter(|list| !list.is_empty()).unwrap_or(seen.start_velocity),
-            dt,
-            margin,
-            cell: self.cell.as_deref(),
-            ..seen
-        };
-        self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
-        (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
-    }
-
-    /// Kick and second half of the drift; the cell books its work and follows its stress.
-    fn close_in_cell(&mut self, dt: f64) {
+    /// Kick and second half of the drift in a cell that deforms, under an acceleration \[m/s^2\]; the cell books its work
+    /// and follows its stress.
+    pub(crate) fn close_in_cell(&mut self, dt: f64, field: D::Vec) {
         let Some(cell) = self.cell.as_deref_mut() else { return };
-        let (pairs, blocks, gravity) = (self.pairs.as_ref(), self.blocks, self.gravity);
-        if !cell.deforms() {
-            let speeds = &mut self.speeds;
-            return crate::motion::close_step(&mut self.grains, pairs, blocks, gravity, dt, false, speeds);
-        }
+        let (pairs, blocks) = (self.pairs.as_ref(), self.blocks);
         let (gradient, middle, pull) = (cell.gradient, cell.edges, pairs.pull());
-        let sums = motion::close_step(&mut self.grains, cell, pairs, blocks, gravity, dt);
+        let sums = motion::close_step(&mut self.grains, cell, pairs, blocks, field, dt);
         let mut virial = sums.virial;
         for axis in (0..D::N).filter(|&axis| cell.periodic[axis]) {
             virial = virial.plus(&Matrix::dyad(pull[axis], middle.columns[axis]), -1.0);
         }
         if self.options.ledger {
+            // What shakes the grains has no potential in which the flow of the cell could lift them.
             let of_gravity = Matrix::dyad(self.gravity, sums.moment);
             cell.work -= dt * (virial.contract(&gradient) + of_gravity.contract(&gradient));
         }
@@ -206,7 +145,7 @@ impl<D: Dim> Dem<D> {
 
     /// Flips a cell that is tilted far, and puts grains back inside that drifted far. What it does
     /// depends on the state alone.
-    fn tend_cell(&mut self) {
+    pub(crate) fn tend_cell(&mut self) {
         let Some(cell) = self.cell.as_deref_mut() else { return };
         let flipped = cell.flip();
         if flipped.is_some() || cell.drift > DRIFT * cell.narrowest() {
