@@ -37,9 +37,15 @@ pub trait Provides<Q: Quantity> {
 }
 
 /// A solver that takes a quantity. What it takes is an input: it only reads it.
+///
+/// Inputs follow the solver: when it re-sorts, adds, removes or exchanges the items that an input belongs to while the input
+/// is held, it moves the input along.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not accept `{Q}`")]
 pub trait Accepts<Q: Quantity> {
-    /// Where to put the quantity.
+    /// Makes room for the quantity, as zeros. A law that writes it calls this in [`Coupling::attach`]; a solver that nobody
+    /// writes to holds nothing and does no work for it. More than one law may call it.
+    fn enable(&mut self) {}
+    /// Where to put the quantity, once [`Accepts::enable`] has been called.
     fn view_mut(&mut self) -> Q::ViewMut<'_>;
 }
 
@@ -50,7 +56,7 @@ pub trait Accepts<Q: Quantity> {
 pub trait Coupling<Slow, Fast>: Send + 'static {
     /// What the law is called.
     fn name(&self) -> &'static str;
-    /// Called once: switches on what the law needs, checks sizes.
+    /// Called once: switches on what the law writes ([`Accepts::enable`]), checks sizes.
     ///
     /// # Errors
     /// When the solvers do not fit one another.

@@ -1,5 +1,9 @@
 //! Quantities that more than one solver lends or takes.
 
+mod load;
+
+pub use load::{HydroLoad, Load, LoadsMut};
+
 use crate::dim::{Dim, Linear};
 use crate::exchange::Quantity;
 use std::marker::PhantomData;

@@ -14,16 +14,20 @@
 //! | `steps_do_not_allocate` | none at all after a warm-up |
 //! | `limits_are_positive_finite_and_named_once` | the report can be used |
 //! | `all_that_can_be_shown_is_shown_once` | with its kind, unit and length |
+//!
+//! A solver that takes loads on grains runs [`loads_follow_their_grains`] as well.
 
 mod allocator;
 mod contract;
 mod damage;
+mod loads;
 #[cfg(test)]
 mod tests;
 mod watch;
 
 pub use allocator::CountingAllocator;
 pub use contract::{Breach, Contract};
+pub use loads::loads_follow_their_grains;
 
 /// Makes a module of contract tests for the solver that a closure builds.
 ///

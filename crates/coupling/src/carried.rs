@@ -72,6 +72,7 @@ where
     }
 
     fn attach(&mut self, slow: &mut Slow, fast: &mut Fast) -> Result<(), CouplingError> {
+        slow.enable();
         let (obstacles, grains) = (slow.view_mut().len(), fast.view());
         let refuse = |reason: String| Err(CouplingError::new("carried obstacles", reason));
         if !self.numbers.is_empty() && self.numbers.len() != grains.len() {

@@ -269,7 +269,7 @@ pub(super) fn state_of(solver: &dyn Solver) -> Section {
 }
 
 /// Compares two states byte by byte; names the first entry that differs.
-fn same(a: &Section, b: &Section, promise: &'static str, found: &str) -> Result<(), Breach> {
+pub(super) fn same(a: &Section, b: &Section, promise: &'static str, found: &str) -> Result<(), Breach> {
     if a == b {
         return Ok(());
     }

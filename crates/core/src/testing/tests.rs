@@ -1,8 +1,13 @@
 //! The contract holds for a toy solver, and is seen to break for toys that break one promise.
 
+mod sorter;
 mod toy;
 
-use super::{Breach, Contract, CountingAllocator};
+use super::{Breach, Contract, CountingAllocator, loads_follow_their_grains};
+use crate::quantity::{HydroLoad, Load};
+use crate::{Accepts, D2, Solver};
+use glam::DVec2;
+use sorter::{Flaw, Sorter};
 use toy::{Fault, Toy};
 
 #[global_allocator]
@@ -96,4 +101,30 @@ fn allocations_are_counted_on_their_own_thread() {
     let zeroed = std::hint::black_box(vec![0_u64; 1000]);
     assert!(CountingAllocator::on_this_thread() > before);
     drop(zeroed);
+}
+
+#[test]
+fn loads_stay_with_grains_that_change_places() {
+    let load = |id: u32| Load::<D2> { force: DVec2::new(f64::from(id), 1.0), torque: 0.5 * f64::from(id) };
+    let test = |flaw| loads_follow_their_grains(|| Sorter::new(flaw), load, 0.01, 12);
+    assert_eq!(test(Flaw::None), Ok(()));
+    assert!(test(Flaw::LeavesLoadsBehind).unwrap_err().found.contains("held"));
+    assert!(test(Flaw::IgnoresLoads).unwrap_err().found.contains("change nothing"));
+    assert!(test(Flaw::AddsUpLoads).unwrap_err().found.contains("held"));
+}
+
+#[test]
+fn room_for_an_input_is_made_when_a_law_asks() {
+    let mut sorter = Sorter::new(Flaw::None);
+    sorter.advance(0.1, 3).unwrap();
+    assert_eq!(sorter.room(), 0);
+    Accepts::<HydroLoad<D2>>::enable(&mut sorter);
+    sorter.view_mut().add(2, Load { force: DVec2::X, torque: 0.5 });
+    // After three steps grain 0 is where grain 2 was.
+    let loads: Vec<(u32, f64)> = sorter.view_mut().iter_mut().map(|(id, load)| (id, load.force.x)).collect();
+    assert_eq!(loads, [(3, 0.0), (4, 0.0), (0, 1.0), (1, 0.0), (2, 0.0)]);
+    assert!(sorter.room() >= 5);
+    // A second law that asks does not take away what the first wrote.
+    Accepts::<HydroLoad<D2>>::enable(&mut sorter);
+    assert_eq!(sorter.view_mut().iter_mut().filter(|(_, load)| **load != Load::ZERO).count(), 1);
 }
