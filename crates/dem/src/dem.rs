@@ -16,6 +16,7 @@ use crate::shaking::Shaken;
 use crate::view::View;
 use crate::walls::Wall;
 use granular_core::Shape;
+use granular_core::quantity::Load;
 use granular_core::solver::check_step;
 use granular_core::walls::{MovingWalls, WallGeometry};
 use granular_core::{
@@ -48,6 +49,8 @@ pub struct Dem<D: Dim> {
     pub(crate) losses: Losses,
     /// Energy put in by changes between steps, such as a new gravity \[J\].
     pub(crate) injected: f64,
+    /// Work of loads that others put on grains \[J\].
+    pub(crate) load_work: f64,
     pub(crate) initial_energy: Option<f64>,
     pub(crate) steps: u64,
     /// The last step taken \[s\].
@@ -98,11 +101,9 @@ impl<D: Dim> Dem<D> {
         let mut grains = Grains::new(&list, &materials, gravity)?;
         let blocks = Blocks::about(list.len(), BLOCKS, SMALLEST_BLOCK);
         let pairs = law(&materials, &options, blocks);
-        if pairs.tangential() {
+        // Without friction a spin stays what it is.
+        if pairs.tangential() || list.iter().any(|grain| grain.spin != D::Spin::ZERO) {
             grains.rotate(list.iter().map(|grain| grain.spin));
-        } else if let Some(grain) = list.iter().find(|grain| grain.spin != D::Spin::ZERO) {
-            let spin = grain.spin.length();
-            return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
         }
         let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
         let moving_walls = MovingWalls::of(&geometry(&walls))?;
@@ -124,6 +125,7 @@ impl<D: Dim> Dem<D> {
             blocks,
             losses: Losses::default(),
             injected: 0.0,
+            load_work: 0.0,
             initial_energy: None,
             steps: 0,
             last_dt: 0.0,
@@ -153,7 +155,20 @@ impl<D: Dim> Dem<D> {
 
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
-        self.pairs.tangential()
+        self.grains.turns
+    }
+
+    /// Makes room for spins, if there is none.
+    pub(crate) fn let_turn(&mut self) {
+        if !self.turns() {
+            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
+        }
+    }
+
+    /// The place in memory of a grain.
+    pub(crate) fn index_of(&self, id: u32) -> Result<usize, SetupError> {
+        let found = self.grains.id.iter().position(|&other| other == id);
+        found.ok_or_else(|| SetupError::new("identifier of a grain", f64::from(id), "that of a grain"))
     }
 
     /// The grain of a stable identifier, as it is now; in a cell that deforms its velocity is that relative to the flow of
@@ -338,6 +353,10 @@ impl<D: Dim> Solver for Dem<D> {
         check_step(dt)?;
         self.clock.run_at(dt);
         self.blocks.inside_pool(|| self.take_steps(dt, steps))
+    }
+
+    fn clear_inputs(&mut self) {
+        self.grains.load.fill(Load::ZERO);
     }
 
     fn location(&self) -> Location<'_> {

@@ -47,6 +47,7 @@ pub mod law;
 mod ledger;
 mod limits;
 mod lists;
+mod loads;
 pub mod material;
 mod motion;
 mod pass;

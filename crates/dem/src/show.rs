@@ -61,10 +61,11 @@ impl<D: Dim> Dem<D> {
     }
 
     /// What the energy ledger misses \[J\]: energy at the start and put in since, less the
-    /// present energy and all losses; the work of moving walls is put in. `None` unless the ledger is kept.
+    /// present energy and all losses; the work of moving walls and of loads of others is put in. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        let put_in = self.injected + self.moving_walls.work + self.cell().map_or(0.0, |cell| cell.work());
+        let of_cell = self.cell().map_or(0.0, |cell| cell.work());
+        let put_in = self.injected + self.moving_walls.work + of_cell + self.load_work;
         Some(initial + put_in - self.energies().mechanical() - self.losses.total())
     }
 
@@ -226,6 +227,10 @@ const NUMBERS: &[(&str, &str, &str)] = &[
 const WALL_WORK: (&str, &str, &str) =
     ("wall_work", "J", "work of moving walls on grains; with the ledger only");
 
+/// Shown when others put loads on grains.
+const LOAD_WORK: (&str, &str, &str) =
+    ("load_work", "J", "work of the loads of others, such as a fluid, on grains; with the ledger only");
+
 const FIELDS: &[(&str, &str, &str)] = &[
     ("radius", "m", "radius"),
     ("velocity", "m/s", "velocity; in a cell that deforms its flow is part of it"),
@@ -265,6 +270,9 @@ impl<D: Dim> Dem<D> {
         if !self.moving_walls.is_empty() {
             list.push(shown(ShownAs::Number)(&WALL_WORK));
         }
+        if self.grains.takes_loads {
+            list.push(shown(ShownAs::Number)(&LOAD_WORK));
+        }
         list.extend(self.wall_catalogue());
         list.extend(self.exchange_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(self.cell_catalogue());
@@ -284,6 +292,9 @@ impl<D: Dim> Dem<D> {
         }
         if !self.moving_walls.is_empty() && sink.wants(WALL_WORK.0) {
             sink.number(WALL_WORK.0, WALL_WORK.1, self.wall_work());
+        }
+        if self.grains.takes_loads && sink.wants(LOAD_WORK.0) {
+            sink.number(LOAD_WORK.0, LOAD_WORK.1, self.load_work());
         }
         self.show_cell(sink);
         self.show_fields(sink);

@@ -7,6 +7,10 @@ use crate::shaking;
 use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
+/// Names in a snapshot.
+const FREE_SPINS: &str = "spins without friction";
+const LOAD_WORK: &str = "work of loads";
+
 impl<D: Dim> Dem<D> {
     pub(crate) fn save_state(&self, to: &mut Section) {
         self.grains.save(to);
@@ -16,6 +20,12 @@ impl<D: Dim> Dem<D> {
         to.put("gravity", &[self.gravity]);
         shaking::save(self.shaken.as_ref(), to);
         to.put("losses", &self.losses.to_array());
+        if self.turns() && !self.pairs.tangential() {
+            to.put_one(FREE_SPINS, 1_u8);
+        }
+        if self.grains.takes_loads {
+            to.put_one(LOAD_WORK, self.load_work);
+        }
         to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
         if let Some(cell) = self.cell() {
             cell.save(to);
@@ -44,9 +54,12 @@ impl<D: Dim> Dem<D> {
         }
         // Not asked of the friction: grains go on turning after it was taken away.
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
-        self.take_materials(turning);
-        let (turns, any_number) = (self.pairs.tangential(), !self.inlets.is_empty());
-        self.grains.restore(from, turns, any_number)?;
+        let freely = from.entries().any(|(name, _)| name == FREE_SPINS);
+        self.take_materials(turning && !freely);
+        if freely {
+            self.let_turn();
+        }
+        self.grains.restore(from, !self.inlets.is_empty())?;
         let blocks = self.cut();
         self.pairs.resize(blocks);
         self.pairs.restore(from, &self.grains, &self.walls)?;
@@ -61,6 +74,8 @@ impl<D: Dim> Dem<D> {
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
         let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;
         self.injected = energy[0];
+        self.load_work = if self.grains.takes_loads { from.one(LOAD_WORK)? } else { 0.0 };
+        check_entry(LOAD_WORK, self.load_work.is_finite())?;
         self.initial_energy = self.options.ledger.then_some(energy[1]);
         let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
         self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);

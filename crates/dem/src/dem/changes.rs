@@ -68,7 +68,7 @@ impl<D: Dim> Dem<D> {
             self.pairs.update(&self.materials, self.options.tension);
         } else {
             self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks, true);
-            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
+            self.let_turn();
         }
     }
 }

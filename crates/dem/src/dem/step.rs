@@ -105,8 +105,13 @@ impl<D: Dim> Dem<D> {
         Ok(stride)
     }
 
-    /// Kick and second half of the drift; shaking is booked.
+    /// Kick and second half of the drift; the work of shaking and of loads of others is booked.
     fn kick(&mut self, dt: f64, go_on: bool) {
+        let loaded = self.grains.takes_loads;
+        let power = if loaded && self.options.ledger { self.power_of_loads() } else { 0.0 };
+        if loaded {
+            self.add_loads();
+        }
         let shaking = self.shake(dt);
         let before = shaking.filter(|_| self.options.ledger).map(|_| self.momentum());
         let field = shaking.map_or(self.gravity, |shaking| self.gravity + shaking);
@@ -118,6 +123,9 @@ impl<D: Dim> Dem<D> {
         }
         if let (Some(shaking), Some(before)) = (shaking, before) {
             self.injected += 0.5 * dt * shaking.dot(before + self.momentum());
+        }
+        if loaded && self.options.ledger {
+            self.load_work += 0.5 * dt * (power + self.power_of_loads());
         }
     }
 

@@ -231,8 +231,7 @@ impl<D: Dim> Dem<D> {
 
     fn put_in(&mut self, grain: &Grain<D>) {
         let mass = self.materials.get(grain.material).density * D::ball_volume(grain.radius);
-        let turns = self.pairs.tangential();
-        self.grains.push(grain, (self.inlets.next_id, mass, self.gravity), turns);
+        self.grains.push(grain, (self.inlets.next_id, mass, self.gravity));
         self.inlets.next_id += 1;
         self.inlets.done.inserted += 1;
         self.inlets.done.mass_inserted += mass;

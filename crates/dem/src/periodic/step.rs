@@ -121,6 +121,8 @@ impl<D: Dim> Dem<D> {
     /// Kick and second half of the drift in a cell that deforms, under an acceleration \[m/s^2\]; the cell books its work
     /// and follows its stress.
     pub(crate) fn close_in_cell(&mut self, dt: f64, field: D::Vec) {
+        let Some(low) = self.cell().map(PeriodicCell::low) else { return };
+        let of_loads = self.grains.takes_loads.then(|| self.virial_of_loads(low));
         let Some(cell) = self.cell.as_deref_mut() else { return };
         let (pairs, blocks) = (self.pairs.as_ref(), self.blocks);
         let (gradient, middle, pull) = (cell.gradient, cell.edges, pairs.pull());
@@ -128,6 +130,9 @@ impl<D: Dim> Dem<D> {
         let mut virial = sums.virial;
         for axis in (0..D::N).filter(|&axis| cell.periodic[axis]) {
             virial = virial.plus(&Matrix::dyad(pull[axis], middle.columns[axis]), -1.0);
+        }
+        if let Some(of_loads) = of_loads {
+            virial = virial.plus(&of_loads, -1.0);
         }
         if self.options.ledger {
             // What shakes the grains has no potential in which the flow of the cell could lift them.

@@ -15,6 +15,7 @@ mod impact;
 mod incline;
 mod inlets;
 mod lists;
+mod loads;
 mod memory;
 mod moving_walls;
 mod oblique;
