@@ -21,12 +21,19 @@
 
 mod ball;
 pub mod blocks;
+pub mod clock;
+pub mod coarse;
 pub mod dim;
 pub mod exchange;
 pub mod field;
+pub mod grid;
+pub mod matrix;
 pub mod observer;
 pub mod quantity;
+pub mod random;
 pub mod search;
+mod setup_error;
+pub mod shape;
 pub mod simulation;
 pub mod snapshot;
 pub mod solver;
@@ -34,15 +41,22 @@ pub mod tensor;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod units;
+pub mod walls;
 
 pub use blocks::{Blocks, PerBlock};
+pub use clock::StepClock;
 pub use dim::{D2, D3, Dim, Linear, Spin, Vector};
 pub use exchange::{Accepts, Coupling, CouplingError, Provides, Quantity};
 pub use field::{FieldRef, FieldSink, Location, Numbers, Shown, ShownAs};
 pub use glam;
+pub use grid::RegularGrid;
+pub use matrix::Matrix;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
 pub use quantity::{GrainMotion, Grains, HydroLoad, Load, LoadsMut, Motion, ObstacleMotion};
+pub use setup_error::SetupError;
+pub use shape::Shape;
 pub use simulation::{Clock, CouplingView, Ending, NodeKey, RunError, Simulation};
 pub use snapshot::{Section, SnapshotError, Stored};
 pub use solver::{Bound, Limits, Memory, Solver, StepError, StepLimit, StepRule};
 pub use tensor::SymmetricTensor;
+pub use walls::WallMotion;

@@ -217,6 +217,19 @@ impl Section {
     }
 }
 
+/// Refuses an entry of a solver's section with values that no step would notice, such as the spin of a grain that
+/// touches nothing.
+///
+/// # Errors
+/// When it does not fit.
+pub fn check_entry(entry: &str, fits: bool) -> Result<(), SnapshotError> {
+    if fits {
+        return Ok(());
+    }
+    let found = "a value that is not finite or out of range".to_owned();
+    Err(SnapshotError::Damaged { place: format!("solver/{entry}"), found })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

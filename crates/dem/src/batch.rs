@@ -5,9 +5,10 @@
 //! they are handed out in the order of the list: neither the width of registers nor where a batch
 //! begins changes a bit.
 
-use crate::kernel::{Body, DEEPEST, Pair, View, push_of};
+use crate::kinematics::{Pair, push_of};
 use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
+use crate::view::{Body, DEEPEST, View};
 use granular_core::{Dim, Linear};
 use multiversion::multiversion;
 
@@ -254,13 +255,13 @@ fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
     let mut k = from;
     while k < to {
         let pair = gathered.pair(k);
-        let (meeting, arms) = pair.meet::<L>(view);
+        let (kinematics, arms) = pair.meet::<L>(view);
         let mut tally = Tally::<LEDGER>::default();
         let mut memory = memories[k];
-        let load = law.load(&meeting, &mut memory, &mut tally);
+        let load = law.load(&kinematics, &mut memory, &mut tally);
         memories[k] = memory;
-        presence[k] = meeting.presence;
-        force[k] = push_of::<D, L>(&load, meeting.normal);
+        presence[k] = kinematics.presence;
+        force[k] = push_of::<D, L>(&load, kinematics.normal);
         if L::TANGENTIAL {
             torques[0][k] = load.rolling - load.tangential * arms.0;
             torques[1][k] = -load.rolling - load.tangential * arms.1;

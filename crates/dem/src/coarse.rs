@@ -1,44 +1,4 @@
-//! Fields of a continuum from grains, on a grid: coarse graining after \[Goldhirsch2010\], with walls after
-//! \[Weinhart2012\].
-//!
-//! A kernel `w` spreads every grain over a few cells. With mass `m`, velocity `v` and place `x` of grains, forces `f` on
-//! the first of two bodies and branches `b` from the second to the first,
-//!
-//! ```text
-//! density           rho(r) = sum m w(r - x)
-//! momentum          p(r)   = sum m v w(r - x),     velocity V = p / rho
-//! kinetic stress    s_k(r) = sum m (v - V)(v - V) w(r - x)
-//! contact stress    s_c(r) = sum f b  int_0^1 w(r - x_2 - s b) ds
-//! force of walls    t(r)   = sum f w(r - c),       c the point of contact
-//! ```
-//!
-//! These fields fulfil the balances of mass and momentum at every point and time,
-//!
-//! ```text
-//! d rho/dt + div p = 0        dp/dt + div(rho V V) = -div(s_c + s_k) + rho g + t
-//! ```
-//!
-//! whatever the kernel, as long as it is smooth; stresses are positive in compression. At a wall the branch runs from
-//! the point of contact to the grain.
-//!
-//! **The kernel** is the product of one cubic B-spline per axis whose knots lie on the cells: its scale is a whole number
-//! of cells. It is chosen because it is the smoothest of the short kernels for which all of this holds at once:
-//!
-//! - values in the cells sum to one for any place of a grain (splines on a grid are a partition of unity), so that mass
-//!   and momentum in cells are exactly those of the grains, and so is the sum of `f b`; no weight is corrected, which
-//!   would break the balances above;
-//! - it has two continuous derivatives, so that gradients of velocity are continuous;
-//! - along a branch it is a polynomial of degree 9 at most between planes through the centres of cells; Gauss-Legendre
-//!   quadrature with five points integrates that exactly;
-//! - it ends at two scales from the grain, and is nearly the same in all directions: it differs from a normal
-//!   distribution of deviation 0.577 scales by less than 4 % of its maximum.
-//!
-//! What a kernel spreads beyond the grid is not lost silently: it is shown as `mass_outside`.
-//!
-//! **A periodic cell** goes on without end: the grid sees every image of a grain and of a branch that reaches into it, so a
-//! grid over the cell holds all of its mass, also where the cell leans. Velocities are those of the laboratory,
-//! `u + L x` with the flow of the cell, so that gradients are those of the flow; what shear makes of velocities within the
-//! reach of a kernel counts as spread about the mean here as everywhere.
+//! Fields of a continuum from grains, see [`granular_core::coarse`].
 //!
 //! ```
 //! use granular_core::glam::DVec2;
@@ -56,12 +16,60 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod catalogue;
-mod fields;
-mod grid;
-mod images;
-mod spline;
-mod sums;
+use crate::contact::{Contact, Partner};
+use crate::dem::Dem;
+use granular_core::coarse::{CoarseFields, CoarseGrid, CoarseSource, ForceBranch, Periods, Sizes};
+use granular_core::{Dim, FieldSink, Shown};
+use std::borrow::Cow;
 
-pub use fields::CoarseFields;
-pub use grid::CoarseGrid;
+impl<D: Dim> Dem<D> {
+    /// All fields on a grid.
+    pub fn coarse_fields(&self, grid: &CoarseGrid<D>) -> CoarseFields<D> {
+        CoarseFields::of(&self.coarse_source(&|visit| self.visit_branches(visit)), grid)
+    }
+
+    /// Shows fields on a grid; sums only what the sink wants, and nothing when it wants none.
+    pub fn show_coarse(&self, grid: &CoarseGrid<D>, sink: &mut dyn FieldSink) {
+        let branches = |visit: &mut dyn FnMut(ForceBranch<D>)| self.visit_branches(visit);
+        CoarseFields::show_of(|| self.coarse_source(&branches), grid, sink);
+    }
+
+    /// Everything that [`Dem::show_coarse`] can show.
+    pub fn coarse_catalogue() -> Vec<Shown> {
+        CoarseFields::<D>::catalogue()
+    }
+
+    fn coarse_source<'a>(
+        &'a self,
+        visit_branches: &'a (dyn Fn(&mut dyn FnMut(ForceBranch<D>)) + Sync),
+    ) -> CoarseSource<'a, D> {
+        let grains = &self.grains;
+        CoarseSource {
+            position: &grains.position,
+            velocity: self.laboratory_velocities().map_or(Cow::Borrowed(&grains.velocity), Cow::Owned),
+            mass: &grains.mass,
+            size: Sizes::Radii(&grains.radius),
+            periods: self.cell().map(|cell| Periods {
+                edges: *cell.edges(),
+                is_periodic: std::array::from_fn(|axis| axis < D::N && cell.is_periodic(axis)),
+                gradient: *cell.gradient(),
+            }),
+            stress: &[],
+            visit_branches,
+            longest_branch: 2.0 * grains.radius_range().1,
+        }
+    }
+
+    fn visit_branches(&self, visit: &mut dyn FnMut(ForceBranch<D>)) {
+        self.visit_contacts(&mut |contact: Contact<D>| {
+            let Contact { first, normal, force, overlap, .. } = contact;
+            let radius = self.grains.radius[first];
+            let (length, second) = match contact.partner {
+                Partner::Grain(second) => (radius + self.grains.radius[second] - overlap, Some(second)),
+                // The point of contact lies on the wall, which does not give way.
+                Partner::Wall(_) => (radius - overlap, None),
+            };
+            visit(ForceBranch { first, second, normal, length, force });
+        });
+    }
+}

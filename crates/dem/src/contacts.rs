@@ -5,56 +5,24 @@
 //! block goes to `outgoing`, from where that block collects it in the order of its `inbox`.
 //! Every grain thus sums its loads in an order that depends on the state alone.
 
-use crate::cell::Cell;
-use crate::cell::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
-use crate::facet_lists::{self, FacetList};
+use crate::contact::{Contact, Partner, contact_of};
 use crate::grains::Grains;
-use crate::kernel::{Kernel, Laws, Owed, Trouble, View, contact_of, meet_wall, overlapping};
+use crate::kinematics::overlapping;
 use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
-use crate::lists::{BlockList, Places, places, spare};
+use crate::lists::{BlockList, Places, Receipt, places, spare};
 use crate::material::{Materials, Tension};
-use crate::moving::Reaction;
-use crate::wall::Wall;
+use crate::pass::{Kernel, Owed, Trouble};
+use crate::periodic::PeriodicCell;
+use crate::periodic::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
+use crate::view::{Laws, View};
+use crate::walls::Wall;
+use crate::walls::contact::meet_wall;
+use crate::walls::surfaces::{self, FacetList};
 use granular_core::search::{CellGrid, Neighbours, SizeLevels};
+use granular_core::walls::Reaction;
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
-
-/// A contact between steps, for output.
-#[derive(Clone, Copy, Debug)]
-pub struct Contact<D: Dim> {
-    /// Index of the first grain in memory.
-    pub first: usize,
-    /// The second body.
-    pub partner: Partner,
-    /// From the centre of the second grain, or of its image, to that of the first \[m\]; from the nearest
-    /// point of a wall.
-    pub branch: D::Vec,
-    /// Edges of the periodic cell by which the image of the second grain is away from it; zeros for an
-    /// ordinary pair.
-    pub shift: [i8; 3],
-    /// Unit vector from the second body to the first.
-    pub normal: D::Vec,
-    /// Overlap \[m\].
-    pub overlap: f64,
-    /// Force along the normal \[N\].
-    pub normal_force: f64,
-    /// Force on the first body \[N\].
-    pub force: D::Vec,
-    /// Torque of rolling and twisting resistance on the first body \[N m\]; the second gets the opposite.
-    pub torque: D::Spin,
-    /// Energy stored in the springs \[J\].
-    pub energy: f64,
-}
-
-/// The second body of a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Partner {
-    /// A grain, by its index in memory.
-    Grain(usize),
-    /// A wall, by its index.
-    Wall(usize),
-}
 
 /// Contacts of a solver, whatever their law.
 pub(crate) trait Pairs<D: Dim>: Send + Sync {
@@ -93,22 +61,6 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn predicts(&self) -> bool;
     /// Bytes in lists, and bytes that one contact remembers.
     fn bytes(&self) -> (usize, usize);
-}
-
-/// Where to collect: grain within the block, owing block, and place there.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Receipt {
-    pub(crate) grain: u32,
-    pub(crate) block: u32,
-    pub(crate) place: u32,
-}
-
-impl Receipt {
-    /// Grains first keeps writes in order of memory. The key is unique, so that an unstable sort,
-    /// which does not allocate, has one outcome.
-    pub(crate) fn order(&self) -> (u32, u32, u32) {
-        (self.grain, self.block, self.place)
-    }
 }
 
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
@@ -157,7 +109,7 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
     fn list_images(
         &mut self,
         view: &View<'_, D>,
-        cell: &Cell<D>,
+        cell: &PeriodicCell<D>,
         order: Option<&[u32]>,
         skin: f64,
         largest: f64,
@@ -192,12 +144,12 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         for list in &self.images {
             for (pair, &memory) in list.pairs.iter().zip(&list.memory) {
                 let met = meet_image::<D, L>(view, cell, pair, 0.0);
-                let Some((meeting, _, _)) = met else { continue };
+                let Some((kinematics, _, _)) = met else { continue };
                 let (first, second) = (pair.first as usize, pair.second as usize);
                 let law = laws.between(view.material_of(first), view.material_of(second));
                 let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
                 let bodies = (first, Partner::Grain(second));
-                let contact = contact_of::<D, L>(law, &meeting, memory, bodies, branch);
+                let contact = contact_of::<D, L>(law, &kinematics, memory, bodies, branch);
                 visit(Contact { shift: pair.shift, ..contact });
             }
         }
@@ -290,7 +242,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             None => build_pairs(&mut self.lists, blocks, view, &self.grid, skin),
         }
         self.reactions.iter_mut().for_each(|of_block| of_block.resize(view.poses.len(), Reaction::default()));
-        if facet_lists::needed(view.walls) {
+        if surfaces::needed(view.walls) {
             blocks.for_each(PerBlock(&mut self.facets), |block, list| {
                 list.0[0].build(view, blocks.range(block), skin);
             });
@@ -308,7 +260,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn regroup(&mut self, walls: &[Wall<D>], blocks: Blocks, place: &[u32]) {
         crate::lists::regroup(&mut self.lists, (self.blocks, blocks), place, L::reversed);
-        facet_lists::regroup(&mut self.facets, walls, blocks, place);
+        surfaces::regroup(&mut self.facets, walls, blocks, place);
         self.resize(blocks);
     }
 
@@ -364,10 +316,16 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
         let laws = Laws { list: &self.laws, materials: self.materials };
         for (block, list) in self.lists.iter().enumerate() {
             list.visit_pairs(self.blocks.range(block), |first, second, &memory| {
-                if let Some(meeting) = overlapping::<D, L>(view, first, second) {
+                if let Some(kinematics) = overlapping::<D, L>(view, first, second) {
                     let law = laws.between(view.material_of(first), view.material_of(second));
                     let branch = view.position[first] - view.position[second];
-                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Grain(second)), branch));
+                    visit(contact_of::<D, L>(
+                        law,
+                        &kinematics,
+                        memory,
+                        (first, Partner::Grain(second)),
+                        branch,
+                    ));
                 }
             });
             for (near, &memory) in list.near_walls.iter().zip(&list.wall_memory) {
@@ -377,13 +335,13 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
                 } else {
                     meet_wall::<D, L, true>(view, first, wall)
                 };
-                if let Some((meeting, _)) = met.filter(|(meeting, _)| meeting.overlap > 0.0) {
+                if let Some((kinematics, _)) = met.filter(|(kinematics, _)| kinematics.overlap > 0.0) {
                     let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-                    let branch = meeting.normal * (view.radius[first] - meeting.overlap);
-                    visit(contact_of::<D, L>(law, &meeting, memory, (first, Partner::Wall(wall)), branch));
+                    let branch = kinematics.normal * (view.radius[first] - kinematics.overlap);
+                    visit(contact_of::<D, L>(law, &kinematics, memory, (first, Partner::Wall(wall)), branch));
                 }
             }
-            facet_lists::visit(&self.facets[block], view, laws, visit);
+            surfaces::visit(&self.facets[block], view, laws, visit);
         }
         self.visit_images(view, visit);
     }
@@ -423,7 +381,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section) {
         crate::lists::save(&self.lists, self.blocks, &grains.id, to);
-        facet_lists::save(&self.facets, walls, &grains.id, to);
+        surfaces::save(&self.facets, walls, &grains.id, to);
         if !self.images.is_empty() {
             images::save(&self.images, &grains.id, to);
         }
@@ -437,7 +395,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
     ) -> Result<(), SnapshotError> {
         let places = Places::of(&grains.id)?;
         crate::lists::restore(&mut self.lists, self.blocks, &places, from)?;
-        facet_lists::restore(&mut self.facets, walls, self.blocks, &places, from)?;
+        surfaces::restore(&mut self.facets, walls, self.blocks, &places, from)?;
         if !self.images.is_empty() {
             images::restore(&mut self.images, self.blocks, &grains.id, from)?;
         }

@@ -1,31 +1,29 @@
 //! The solver: set-up, the step, and changes between stages.
 
-use crate::cell::Cell;
+mod changes;
+mod step;
+
 use crate::choice::{choose_law, needs_rotation};
-use crate::clock::Clock;
 use crate::contacts::{Contacts, Pairs};
 use crate::grains::{Grain, Grains};
-use crate::kernel::{Trouble, View};
+use crate::inlets::InletsAndOutlets;
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
-use crate::moving::{Movers, Reaction};
-use crate::setup::{ContactModel, LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::periodic::PeriodicCell;
+use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
 use crate::shaking::Shaken;
-use crate::traffic::Traffic;
-use crate::wall::{Shape, Wall};
-use crate::{lists, motion};
+use crate::view::View;
+use crate::walls::Wall;
+use granular_core::Shape;
+use granular_core::quantity::Load;
 use granular_core::solver::check_step;
+use granular_core::walls::{MovingWalls, WallGeometry};
 use granular_core::{
     Blocks, Dim, FieldSink, GrainMotion, Limits, Linear, Location, Memory, Provides, Section, Shown,
-    SnapshotError, Solver, StepError,
+    SnapshotError, Solver, StepClock, StepError,
 };
 
-/// Steps between re-sorting grains in memory. Tied to the count of steps, so that a restart
-/// sorts at the same places.
-const SORT_EVERY: u64 = 5000;
-/// Below this number sorting does not pay.
-const SORT_FROM: usize = 512;
 /// Blocks that a sample is cut into, and their smallest size. Many small blocks share the work
 /// evenly (16 instead of 64 cost a fifth of the speed of two threads on a collapsing column of
 /// 13 000 disks) for 2 % on one thread.
@@ -38,19 +36,21 @@ const SHORTEST: f64 = 0.08;
 pub struct Dem<D: Dim> {
     pub(crate) materials: Materials,
     pub(crate) walls: Vec<Wall<D>>,
-    pub(crate) movers: Movers<D>,
-    pub(crate) clock: Clock,
-    pub(crate) traffic: Traffic<D>,
+    pub(crate) moving_walls: MovingWalls<D>,
+    pub(crate) clock: StepClock,
+    pub(crate) inlets: InletsAndOutlets<D>,
     pub(crate) gravity: D::Vec,
     pub(crate) shaken: Option<Shaken<D>>,
     pub(crate) options: Options,
     pub(crate) grains: Grains<D>,
     pub(crate) pairs: Box<dyn Pairs<D>>,
-    pub(crate) cell: Option<Box<Cell<D>>>,
+    pub(crate) cell: Option<Box<PeriodicCell<D>>>,
     pub(crate) blocks: Blocks,
     pub(crate) losses: Losses,
     /// Energy put in by changes between steps, such as a new gravity \[J\].
     pub(crate) injected: f64,
+    /// Work of loads that others put on grains \[J\].
+    pub(crate) load_work: f64,
     pub(crate) initial_energy: Option<f64>,
     pub(crate) steps: u64,
     /// The last step taken \[s\].
@@ -59,6 +59,8 @@ pub struct Dem<D: Dim> {
     skin: f64,
     /// Reach of the present lists \[m\].
     pub(crate) reach: f64,
+    /// Largest radius when the lists were built \[m\].
+    pub(crate) largest: f64,
     /// Bound on how far any grain moved since the lists were built \[m\].
     pub(crate) travel: f64,
     pub(crate) speeds: Vec<u64>,
@@ -99,18 +101,16 @@ impl<D: Dim> Dem<D> {
         let mut grains = Grains::new(&list, &materials, gravity)?;
         let blocks = Blocks::about(list.len(), BLOCKS, SMALLEST_BLOCK);
         let pairs = law(&materials, &options, blocks);
-        if pairs.tangential() {
+        // Without friction a spin stays what it is.
+        if pairs.tangential() || list.iter().any(|grain| grain.spin != D::Spin::ZERO) {
             grains.rotate(list.iter().map(|grain| grain.spin));
-        } else if let Some(grain) = list.iter().find(|grain| grain.spin != D::Spin::ZERO) {
-            let spin = grain.spin.length();
-            return Err(SetupError::new("spin of a grain", spin, "zero, since nothing couples to it"));
         }
         let mean = grains.radius.iter().sum::<f64>() / grains.len().max(1) as f64;
-        let movers = Movers::of(&walls)?;
+        let moving_walls = MovingWalls::of(&geometry(&walls))?;
         let mut dem = Self {
-            movers,
-            clock: Clock::default(),
-            traffic: Traffic::new(list.len()),
+            moving_walls,
+            clock: StepClock::default(),
+            inlets: InletsAndOutlets::new(list.len()),
             skin: options.skin * 2.0 * mean,
             reach: 0.0,
             speeds: vec![0; blocks.count()],
@@ -125,10 +125,12 @@ impl<D: Dim> Dem<D> {
             blocks,
             losses: Losses::default(),
             injected: 0.0,
+            load_work: 0.0,
             initial_energy: None,
             steps: 0,
             last_dt: 0.0,
             custom_law,
+            largest: 0.0,
             travel: 0.0,
         };
         dem.list(0.0, None);
@@ -153,7 +155,20 @@ impl<D: Dim> Dem<D> {
 
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
-        self.pairs.tangential()
+        self.grains.turns
+    }
+
+    /// Makes room for spins, if there is none.
+    pub(crate) fn let_turn(&mut self) {
+        if !self.turns() {
+            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
+        }
+    }
+
+    /// The place in memory of a grain.
+    pub(crate) fn index_of(&self, id: u32) -> Result<usize, SetupError> {
+        let found = self.grains.id.iter().position(|&other| other == id);
+        found.ok_or_else(|| SetupError::new("identifier of a grain", f64::from(id), "that of a grain"))
     }
 
     /// The grain of a stable identifier, as it is now; in a cell that deforms its velocity is that relative to the flow of
@@ -201,31 +216,9 @@ impl<D: Dim> Dem<D> {
         self.losses
     }
 
-    /// Opens or closes the wall of this name. Returns whether there is one.
-    pub fn set_open(&mut self, name: &str, open: bool) -> bool {
-        let found = self.walls.iter().position(|wall| wall.name == name);
-        self.change(|dem| {
-            if let Some(index) = found {
-                dem.walls[index].open = open;
-            }
-        });
-        found.is_some()
-    }
-
-    /// Starts or holds the moving wall of this name, where it is. Returns whether there is one.
-    pub fn set_moving(&mut self, name: &str, moves: bool) -> bool {
-        let Some(wall) = self.walls.iter().position(|wall| wall.name == name) else { return false };
-        let time = self.clock.time();
-        let found = self.movers.set_running(wall, moves, time);
-        if found {
-            self.movers.place(time);
-        }
-        found
-    }
-
     /// Work that moving walls did on grains since the start \[J\]; zero unless the ledger is kept.
     pub fn wall_work(&self) -> f64 {
-        self.movers.work
+        self.moving_walls.work
     }
 
     /// Where a wall is \[m\]: the point with which a plane was given, moved along with it; for other walls how far they
@@ -234,7 +227,7 @@ impl<D: Dim> Dem<D> {
     /// # Panics
     /// When there is no wall of this index.
     pub fn wall_position(&self, wall: usize) -> D::Vec {
-        let shift = self.movers.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
+        let shift = self.moving_walls.poses.get(wall).map_or(D::Vec::ZERO, |pose| pose.shift);
         match self.walls[wall].shape {
             Shape::Plane { point, .. } => point + shift,
             _ => shift,
@@ -246,62 +239,20 @@ impl<D: Dim> Dem<D> {
         self.clock.time()
     }
 
-    /// Changes gravity \[m/s^2\].
-    pub fn set_gravity(&mut self, gravity: D::Vec) {
-        self.change(|dem| dem.gravity = gravity);
-    }
-
-    /// Changes the friction of one material. When friction comes into a scene that had none,
-    /// grains begin to turn and contacts to remember.
-    pub fn set_friction(&mut self, material: MaterialId, friction: f64) {
-        self.change(|dem| {
-            dem.materials.set_friction(material, friction);
-            dem.take_materials(needs_rotation(&dem.materials));
-        });
-    }
-
-    /// Sets all velocities and spins to zero.
-    pub fn stop_motion(&mut self) {
-        self.change(|dem| {
-            dem.grains.velocity.fill(D::Vec::ZERO);
-            dem.grains.spin.fill(D::Spin::ZERO);
-        });
-    }
-
-    /// Changes something between steps, and books the energy that this puts in.
-    pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
-        let before = self.options.ledger.then(|| self.energies().mechanical());
-        change(self);
-        self.list(0.0, None);
-        if let Some(before) = before {
-            self.injected += self.energies().mechanical() - before;
-        }
-    }
-
-    /// Takes changed materials; grains begin to turn if they shall. They never stop turning: a
-    /// scene may give friction and take it away again.
-    pub(crate) fn take_materials(&mut self, turning: bool) {
-        if self.custom_law || self.pairs.tangential() || !turning {
-            self.pairs.update(&self.materials, self.options.tension);
-        } else {
-            self.pairs = choose_law::<D>(&self.materials, &self.options, self.blocks, true);
-            self.grains.rotate(std::iter::repeat_n(D::Spin::ZERO, self.grains.len()));
-        }
-    }
-
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
         let cell = self.cell.as_deref();
-        View { cell, ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt) }
+        View { cell, ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt) }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step, zero when that is not known.
     pub(crate) fn list(&mut self, stride: f64, order: Option<&[u32]>) {
         self.reach = self.reach_for(stride);
         self.travel = 0.0;
-        let (_, largest) = self.grains.radius_range();
-        self.movers.note_distances(&self.grains.position, 2.0 * self.reach + largest);
-        let view = view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt);
+        self.largest = self.grains.radius_range().1;
+        let largest = self.largest;
+        self.moving_walls.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let view = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
         self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
     }
 
@@ -310,7 +261,7 @@ impl<D: Dim> Dem<D> {
     /// A long list is read in every step, a short one is built often: with the reach `r` the one costs `a r` and the
     /// other `b stride / r`, least together at `r^2 = b/a stride`, where `b/a` was measured as ten
     /// diameters. A stride near the skin (a shot) widens the reach so that the list serves for another step.
-    fn reach_for(&self, stride: f64) -> f64 {
+    pub(crate) fn reach_for(&self, stride: f64) -> f64 {
         let longest = self.skin;
         let best = (10.0 * longest / self.options.skin * stride).sqrt();
         let reach = if stride > 0.0 { best.clamp(SHORTEST * longest, longest) } else { longest };
@@ -335,133 +286,24 @@ impl<D: Dim> Dem<D> {
         self.pairs.regroup(&self.walls, blocks, place);
         self.list(0.0, None);
     }
+}
 
-    /// Sorts grains in memory when the count of steps says so.
-    pub(crate) fn sort_if_due(&mut self) {
-        if self.sorts_after(0) {
-            let (_, largest) = self.grains.radius_range();
-            let order = self.grains.sort(2.0 * largest);
-            self.list(0.0, Some(&order));
-        }
-    }
-
-    /// Whether grains will be sorted when so many more steps are taken.
-    fn sorts_after(&self, steps: u64) -> bool {
-        (self.steps + steps).is_multiple_of(SORT_EVERY) && self.len() >= SORT_FROM
-    }
-
-    /// Steps without a periodic cell.
-    fn advance_in_the_open(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
-        // Between two steps of one call, the end of one and the start of the next share a pass.
-        let mut opened = false;
-        for remaining in (0..steps).rev() {
-            if !opened {
-                self.sort_if_due();
-                self.exchange_if_due();
-                motion::open_step(&mut self.grains, self.blocks, dt, &mut self.speeds);
-            }
-            opened = remaining > 0 && !self.sorts_after(1) && !self.looks_after(1);
-            self.load_and_kick(dt, opened)?;
-        }
-        self.movers.place(self.clock.time());
-        Ok(())
-    }
-
-    /// One step between its two halves: lists, loads, kick.
-    fn load_and_kick(&mut self, dt: f64, go_on: bool) -> Result<(), StepError> {
-        let mut stride = motion::fastest(&self.speeds) * dt;
-        if !self.movers.is_empty() {
-            stride = stride.max(self.movers.fastest(dt) * dt);
-            self.movers.place_in_step(self.clock.time(), dt);
-        }
-        if !stride.is_finite() {
-            return Err(self.not_finite());
-        }
-        self.travel += stride;
-        // Much too long a list costs more than another one.
-        if 2.0 * self.travel + stride > self.reach || self.reach > 4.0 * self.reach_for(stride) {
-            self.list(stride, None);
-        }
-        self.push(dt, stride);
-        self.last_dt = dt;
-        if !self.movers.is_empty() {
-            self.move_walls(dt);
-        }
-        let shaking = self.shake(dt);
-        let before = shaking.filter(|_| self.options.ledger).map(|_| self.momentum());
-        let (pairs, gravity) = (self.pairs.as_ref(), self.gravity + shaking.unwrap_or(D::Vec::ZERO));
-        motion::close_step(&mut self.grains, pairs, self.blocks, gravity, dt, go_on, &mut self.speeds);
-        if let (Some(shaking), Some(before)) = (shaking, before) {
-            self.injected += 0.5 * dt * shaking.dot(before + self.momentum());
-        }
-        self.steps += 1;
-        self.clock.step();
-        let (losses, trouble) = self.pairs.outcome();
-        self.losses += losses;
-        if !self.losses.total().is_finite() {
-            let (solver, quantity, step) = ("dem", "losses of energy", self.steps);
-            return Err(StepError::NotFinite { solver, quantity, id: 0, step });
-        }
-        trouble.map_or(Ok(()), |trouble| Err(self.too_deep(trouble)))
-    }
-
-    /// Tells walls how grains pushed them.
-    pub(crate) fn move_walls(&mut self, dt: f64) {
-        self.movers.reactions.fill(Reaction::default());
-        self.pairs.add_reactions(&mut self.movers.reactions);
-        self.movers.take_reactions(dt, self.options.ledger);
-    }
-
-    /// Writes the loads of all contacts where the accelerations will be.
-    fn push(&mut self, dt: f64, margin: f64) {
-        let mut force = std::mem::take(&mut self.grains.acceleration);
-        let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
-        let view = View {
-            velocity: &self.grains.middle_velocity,
-            spin: &self.grains.middle_spin,
-            dt,
-            predicts: self.pairs.predicts(),
-            margin,
-            ..view_of(&self.grains, (&self.walls, &self.movers), &self.options, self.last_dt)
-        };
-        self.pairs.push(&view, self.options.ledger, &mut force, &mut torque);
-        (self.grains.acceleration, self.grains.spin_acceleration) = (force, torque);
-    }
-
-    pub(crate) fn not_finite(&self) -> StepError {
-        let grains = &self.grains;
-        let at =
-            lists::all_finite::<D>(&grains.position).or_else(|| lists::all_finite::<D>(&grains.velocity));
-        let id = at.map_or(0, |index| u64::from(grains.id[index]));
-        StepError::NotFinite { solver: "dem", quantity: "motion", id, step: self.steps }
-    }
-
-    pub(crate) fn too_deep(&self, trouble: Trouble) -> StepError {
-        let id = self.grains.id[trouble.first as usize];
-        let (share, allowed) = (trouble.overlap / trouble.radius, crate::kernel::DEEPEST);
-        // As if this was the hardest impact; it may be harder still a step later.
-        let stiffer = match self.options.contact {
-            ContactModel::Linear => {
-                let factor = crate::limits::softer_than(share / allowed, crate::limits::LINEAR);
-                format!("raise the normal stiffness at least {factor}-fold")
-            }
-            ContactModel::Hertz => {
-                let factor = crate::limits::softer_than(share / allowed, crate::limits::HERTZ);
-                format!("raise Young's modulus at least {factor}-fold")
-            }
-        };
-        StepError::TooStiff {
-            what: format!("overlap over radius at grain {id} in step {}", self.steps),
-            value: share,
-            allowed,
-            hint: format!("{stiffer}, or lower the speed of the grains"),
-        }
-    }
+/// What motion needs to know of walls.
+fn geometry<D: Dim>(walls: &[Wall<D>]) -> Vec<WallGeometry<'_, D>> {
+    walls
+        .iter()
+        .map(|Wall { name, shape, motion, held, .. }| WallGeometry {
+            name,
+            shape,
+            motion: *motion,
+            held: *held,
+        })
+        .collect()
 }
 
 pub(crate) fn view_of<'a, D: Dim>(
     grains: &'a Grains<D>,
-    (walls, movers): (&'a [Wall<D>], &'a Movers<D>),
+    (walls, moving_walls): (&'a [Wall<D>], &'a MovingWalls<D>),
     options: &Options,
     last_dt: f64,
 ) -> View<'a, D> {
@@ -476,7 +318,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         material: &grains.material,
         first_material: grains.first_material,
         walls,
-        poses: &movers.poses,
+        poses: &moving_walls.poses,
         cell: None,
         dt: 0.0,
         last_dt,
@@ -510,10 +352,11 @@ impl<D: Dim> Solver for Dem<D> {
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);
-        self.blocks.inside_pool(|| match self.cell {
-            Some(_) => self.advance_in_cell(dt, steps),
-            None => self.advance_in_the_open(dt, steps),
-        })
+        self.blocks.inside_pool(|| self.take_steps(dt, steps))
+    }
+
+    fn clear_inputs(&mut self) {
+        self.grains.load.fill(Load::ZERO);
     }
 
     fn places(&self) -> Vec<(&'static str, Location<'_>)> {

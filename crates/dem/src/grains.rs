@@ -1,7 +1,9 @@
 //! The grains: one array per property, those that the scene does not need left empty.
 
 use crate::material::{MaterialId, Materials, SetupError};
+use granular_core::quantity::Load;
 use granular_core::search::curve_order;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 /// Largest over smallest radius.
@@ -54,6 +56,12 @@ pub(crate) struct Grains<D: Dim> {
     /// Whether there are several materials; with no grains the array does not tell.
     several_materials: bool,
     pub(crate) first_material: u8,
+    /// Whether grains turn; with no grains the arrays do not tell.
+    pub(crate) turns: bool,
+    /// Whether others put loads on grains.
+    pub(crate) takes_loads: bool,
+    /// Loads that others put on grains, such as those of a fluid; empty unless one does.
+    pub(crate) load: Vec<Load<D>>,
     /// Empty when nothing makes grains turn; so are the two arrays of spins below.
     pub(crate) spin: Vec<D::Spin>,
     pub(crate) spin_acceleration: Vec<D::Spin>,
@@ -91,6 +99,7 @@ impl<D: Dim> Grains<D> {
 
     /// Makes room for rotation, with these spins.
     pub(crate) fn rotate(&mut self, spins: impl Iterator<Item = D::Spin>) {
+        self.turns = true;
         self.spin = spins.collect();
         self.spin_acceleration = vec![D::Spin::ZERO; self.spin.len()];
         self.middle_spin = vec![D::Spin::ZERO; self.spin.len()];
@@ -107,7 +116,7 @@ impl<D: Dim> Grains<D> {
     }
 
     /// Adds a grain with its identifier, mass \[kg\] and acceleration \[m/s^2\].
-    pub(crate) fn push(&mut self, grain: &Grain<D>, (id, mass, gravity): (u32, f64, D::Vec), turns: bool) {
+    pub(crate) fn push(&mut self, grain: &Grain<D>, (id, mass, gravity): (u32, f64, D::Vec)) {
         self.position.push(grain.position);
         self.velocity.push(grain.velocity);
         self.acceleration.push(gravity);
@@ -118,7 +127,10 @@ impl<D: Dim> Grains<D> {
         if self.several_materials {
             self.material.push(grain.material.0);
         }
-        if turns {
+        if self.takes_loads {
+            self.load.push(Load::ZERO);
+        }
+        if self.turns {
             self.spin.push(grain.spin);
             self.spin_acceleration.push(D::Spin::ZERO);
             self.middle_spin.push(D::Spin::ZERO);
@@ -134,6 +146,7 @@ impl<D: Dim> Grains<D> {
         keep(&mut self.mass, stays);
         keep(&mut self.id, stays);
         keep(&mut self.material, stays);
+        keep(&mut self.load, stays);
         keep(&mut self.spin, stays);
         keep(&mut self.spin_acceleration, stays);
         keep(&mut self.middle_velocity, stays);
@@ -163,6 +176,7 @@ impl<D: Dim> Grains<D> {
         permute(&mut self.mass, &order);
         permute(&mut self.id, &order);
         permute(&mut self.material, &order);
+        permute(&mut self.load, &order);
         permute(&mut self.spin, &order);
         permute(&mut self.spin_acceleration, &order);
         order
@@ -173,7 +187,8 @@ impl<D: Dim> Grains<D> {
         let vectors = 4 * size_of::<D::Vec>() + 2 * size_of::<f64>() + size_of::<u32>();
         let material = if self.material.is_empty() { 0 } else { 1 };
         let rotation = if self.spin.is_empty() { 0 } else { 3 * size_of::<D::Spin>() };
-        vectors + material + rotation
+        let load = if self.takes_loads { size_of::<Load<D>>() } else { 0 };
+        vectors + material + rotation + load
     }
 
     pub(crate) fn save(&self, to: &mut Section) {
@@ -186,18 +201,17 @@ impl<D: Dim> Grains<D> {
         to.put("material", &self.material);
         to.put("spin", &self.spin);
         to.put("spin acceleration", &self.spin_acceleration);
+        if self.takes_loads {
+            to.put(LOADS[0], &self.load.iter().map(|load| load.force).collect::<Vec<_>>());
+            to.put(LOADS[1], &self.load.iter().map(|load| load.torque).collect::<Vec<_>>());
+        }
     }
 
     /// Restores all grains; their number may differ only where grains come and go.
-    pub(crate) fn restore(
-        &mut self,
-        from: &Section,
-        turns: bool,
-        any_number: bool,
-    ) -> Result<(), SnapshotError> {
+    pub(crate) fn restore(&mut self, from: &Section, any_number: bool) -> Result<(), SnapshotError> {
         let position: Vec<D::Vec> = from.array("position")?;
         let all = if any_number { position.len() } else { self.len() };
-        let turning = if turns { all } else { 0 };
+        let turning = if self.turns { all } else { 0 };
         let material = if self.several_materials { all } else { 0 };
         self.position = from.array_of("position", all)?;
         self.middle_velocity = vec![D::Vec::ZERO; all];
@@ -210,29 +224,37 @@ impl<D: Dim> Grains<D> {
         self.material = from.array_of("material", material)?;
         self.spin = from.array_of("spin", turning)?;
         self.spin_acceleration = from.array_of("spin acceleration", turning)?;
-        check_finite("position", self.position.iter().all(|x| x.is_finite()))?;
-        check_finite("velocity", self.velocity.iter().all(|v| v.is_finite()))?;
-        check_finite("acceleration", self.acceleration.iter().all(|a| a.is_finite()))?;
-        check_finite("radius", self.radius.iter().all(|r| r.is_finite() && *r > 0.0))?;
-        check_finite("mass", self.mass.iter().all(|m| m.is_finite() && *m > 0.0))?;
-        check_finite("spin", self.spin.iter().all(|w| w.is_finite()))?;
-        check_finite("spin acceleration", self.spin_acceleration.iter().all(|a| a.is_finite()))
+        self.restore_loads(from, all)?;
+        check_entry("position", self.position.iter().all(|x| x.is_finite()))?;
+        check_entry("velocity", self.velocity.iter().all(|v| v.is_finite()))?;
+        check_entry("acceleration", self.acceleration.iter().all(|a| a.is_finite()))?;
+        check_entry("radius", self.radius.iter().all(|r| r.is_finite() && *r > 0.0))?;
+        check_entry("mass", self.mass.iter().all(|m| m.is_finite() && *m > 0.0))?;
+        check_entry("spin", self.spin.iter().all(|w| w.is_finite()))?;
+        check_entry("spin acceleration", self.spin_acceleration.iter().all(|a| a.is_finite()))
+    }
+}
+
+/// Names in a snapshot.
+const LOADS: [&str; 2] = ["force of loads", "torque of loads"];
+
+impl<D: Dim> Grains<D> {
+    /// Loads of a snapshot; none where it has none and nothing asks for them.
+    fn restore_loads(&mut self, from: &Section, all: usize) -> Result<(), SnapshotError> {
+        self.takes_loads |= from.entries().any(|(name, _)| name == LOADS[0]);
+        if !self.takes_loads {
+            return Ok(());
+        }
+        let force: Vec<D::Vec> = from.array_of(LOADS[0], all)?;
+        let torque: Vec<D::Spin> = from.array_of(LOADS[1], all)?;
+        self.load = force.into_iter().zip(torque).map(|(force, torque)| Load { force, torque }).collect();
+        check_entry(LOADS[0], self.load.iter().all(Load::is_finite))
     }
 }
 
 /// Mass of a grain \[kg; kg/m in the plane\].
 fn mass_of<D: Dim>(grain: &Grain<D>, materials: &Materials) -> f64 {
     materials.get(grain.material).density * D::ball_volume(grain.radius)
-}
-
-/// Refuses an entry of a snapshot with values that no step would notice, such as the spin of a
-/// grain that touches nothing.
-pub(crate) fn check_finite(entry: &str, fits: bool) -> Result<(), SnapshotError> {
-    if fits {
-        return Ok(());
-    }
-    let found = "a value that is not finite or out of range".to_owned();
-    Err(SnapshotError::Damaged { place: format!("solver/{entry}"), found })
 }
 
 fn keep<T>(values: &mut Vec<T>, stays: &[bool]) {

@@ -11,7 +11,7 @@ mod slider;
 
 pub use hertz::{HertzMindlin, HertzNormal};
 pub use linear::{LinearFrictional, LinearNormal};
-pub use resistance::{Rolling, Twisting};
+pub use resistance::{LinearRolling, Rolling, Twisting};
 pub use slider::{Motion, Slid, Slider};
 
 use crate::ledger::Tally;
@@ -21,7 +21,7 @@ use std::fmt::Debug;
 
 /// Two bodies at their contact, at the middle of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<D: Dim> {
+pub struct Kinematics<D: Dim> {
     /// Unit vector from the second to the first body.
     pub normal: D::Vec,
     /// Overlap \[m\], averaged over the part of the step before and after the surfaces meet.
@@ -57,7 +57,7 @@ pub struct Meeting<D: Dim> {
     pub last_dt: f64,
 }
 
-impl<D: Dim> Meeting<D> {
+impl<D: Dim> Kinematics<D> {
     /// Energy lost over the step \[J\] in a normal dashpot of damping `c` \[N s/m\], in a contact that pushes with
     /// `force`, of which `elastic` by its spring \[N\]. Where the cut of tension acts, the force is zero, and the dashpot
     /// takes up what the spring gives back.
@@ -119,9 +119,6 @@ impl<D: Dim> Load<D> {
     }
 }
 
-/// [`LinearFrictional`] with rolling resistance.
-pub type LinearRolling = Rolling<LinearFrictional>;
-
 /// A contact law. Statically typed in the kernels: pass any implementation to
 /// [`Dem::with_law`](crate::Dem::with_law).
 pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
@@ -129,14 +126,14 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     type Memory: Copy + Default + PartialEq + Stored + Debug + Send + Sync + 'static;
     /// Whether tangential motion matters: without it grains do not turn and have no spin.
     const TANGENTIAL: bool;
-    /// Whether the law reads [`Meeting::twisting`].
+    /// Whether the law reads [`Kinematics::twisting`].
     const TWISTING: bool = false;
     /// Name, for reports.
     const NAME: &'static str;
 
     /// The law between two materials.
     fn between(properties: &PairProperties, tension: Tension) -> Self;
-    /// Whether the law reads `slip` and `roll` of a [`Meeting`], the motion across the contact in the
+    /// Whether the law reads `slip` and `roll` of a [`Kinematics`], the motion across the contact in the
     /// middle of the step as predicted. They are zero, and cost nothing, when no law of a
     /// simulation does.
     fn predicts(&self) -> bool {
@@ -145,7 +142,7 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// The load over one step; dissipation is told to the tally.
     fn load<const LEDGER: bool>(
         &self,
-        meeting: &Meeting<D>,
+        kinematics: &Kinematics<D>,
         memory: &mut Self::Memory,
         tally: &mut Tally<LEDGER>,
     ) -> Load<D>;
@@ -157,8 +154,8 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// The same contact seen from the second body.
     fn reversed(memory: Self::Memory) -> Self::Memory;
     /// The load between steps and the energy stored in springs \[J\], for output. The step of the
-    /// meeting is the last one taken.
-    fn at_rest(&self, meeting: &Meeting<D>, memory: Self::Memory) -> (Load<D>, f64);
+    /// kinematics is the last one taken.
+    fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (Load<D>, f64);
 }
 
 /// A law with a tangential spring, whose stiffness and damping may also resist rolling and
@@ -166,8 +163,8 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
 pub trait Frictional<D: Dim>: ContactLaw<D> {
     /// Names of the law with rolling resistance, and with rolling and twisting resistance.
     const RESISTING: [&'static str; 2];
-    /// Stiffness and damping of the tangential spring in this meeting.
-    fn slider(&self, meeting: &Meeting<D>) -> Slider;
+    /// Stiffness and damping of the tangential spring in these kinematics.
+    fn slider(&self, kinematics: &Kinematics<D>) -> Slider;
     /// Stiffness that springs had at the last step \[N/m\].
     fn last_stiffness(&self, last: &Self::Memory) -> f64;
     /// Carries a spring from the last step over to a stiffness that changed since; returns the

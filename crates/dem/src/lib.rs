@@ -9,7 +9,7 @@
 //! with contacts that are linear springs and dashpots or those of elastic spheres (Hertz and
 //! Mindlin), Coulomb friction with a tangential spring, and optional resistance against rolling
 //! and twisting. The scheme is of second order in time with damping, and contact entry
-//! and exit included (see [`law::Meeting`]).
+//! and exit included (see [`law::Kinematics`]).
 //!
 //! ```
 //! use granular_dem::{Dem2, Grain, Material, Materials, Options, Setup, Wall};
@@ -34,44 +34,43 @@
 //! ```
 
 mod batch;
-mod below;
-pub mod cell;
+
 mod choice;
-mod clock;
 pub mod coarse;
+mod contact;
 mod contacts;
 mod dem;
-mod facet_lists;
-mod facets;
 mod grains;
-mod kernel;
+mod inlets;
+mod kinematics;
 pub mod law;
 mod ledger;
 mod limits;
 mod lists;
+mod loads;
 pub mod material;
 mod motion;
-mod moving;
-mod pose;
+mod pass;
+pub mod periodic;
 mod push;
-mod servo;
 mod setup;
 mod shaking;
 mod show;
+mod softness;
 #[cfg(feature = "serde")]
 pub mod spec;
 mod state;
-mod traffic;
-pub mod wall;
-mod wall_numbers;
 
-pub use below::{Falling, Gates};
-pub use cell::{Cell, CellControl, Control, Matrix};
-pub use coarse::{CoarseFields, CoarseGrid};
-pub use contacts::{Contact, Partner};
+mod view;
+pub mod walls;
+
+pub use contact::{Contact, Partner};
 pub use dem::Dem;
-pub use facets::Facets;
 pub use grains::Grain;
+pub use granular_core::coarse::{CoarseFields, CoarseGrid};
+pub use granular_core::shape::{Facets, Shape};
+pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
+pub use inlets::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
 pub use law::{
     ContactLaw, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, LinearRolling, Rolling, Twisting,
 };
@@ -81,14 +80,12 @@ pub use material::{
     Elasticity, HertzImpact, Material, MaterialId, Materials, PairOverride, PairProperties, SetupError,
     Tension,
 };
-pub use moving::WallMotion;
+pub use periodic::{CellControl, Control, Matrix, PeriodicCell};
 pub use push::{Push, PushProfile, Pushed, Strength};
-pub use servo::{PressureBetween, Servo};
 pub use setup::{ContactModel, LeverArm, Options, Setup};
 pub use shaking::Shaking;
 pub use show::Energies;
-pub use traffic::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
-pub use wall::{Shape, Wall};
+pub use walls::{Falling, Gates, Wall};
 
 /// Disks in the plane, per metre of depth.
 pub type Dem2 = Dem<granular_core::D2>;

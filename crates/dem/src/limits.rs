@@ -2,11 +2,12 @@
 
 mod stiffest;
 
-use crate::contacts::{Contact, Partner};
+use crate::contact::{Contact, Partner};
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
 use crate::setup::{ContactModel, LeverArm};
-use crate::wall::Shape;
+use crate::softness::{HERTZ, LINEAR, rounded_up, softer_than};
+use granular_core::Shape;
 use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule, Vector};
 use stiffest::{Oscillator, Stiffest};
 
@@ -44,7 +45,7 @@ impl<D: Dim> Dem<D> {
             rule: StepRule::Recommended,
             why: format!(
                 "1/{fraction} of the shortest contact time, {:.4e} s ({}, {})",
-                shortest.contact_time, shortest.names, shortest.meeting
+                shortest.contact_time, shortest.names, shortest.assumed
             ),
         });
         if let Some(first) = by(|pair| pair.rayleigh_time).filter(|pair| pair.rayleigh_time.is_finite()) {
@@ -65,7 +66,7 @@ impl<D: Dim> Dem<D> {
             rule: StepRule::AtMost,
             why: format!(
                 "leapfrog with damping, {neighbours} contacts per grain, {}, {}",
-                tightest.names, tightest.meeting
+                tightest.names, tightest.assumed
             ),
         });
         report.steps.extend(self.servo_limits(&stiffest));
@@ -103,7 +104,7 @@ impl<D: Dim> Dem<D> {
         let layer = 2.0 * (self.len() as f64).powf(1.0 - 1.0 / D::N as f64);
         let grains = layer.min(self.len() as f64).max(1.0);
         let stiffness = pairs.iter().map(|pair| pair.stiffness).fold(0.0, f64::max);
-        let (wall, servo) = self.movers.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
+        let (wall, servo) = self.moving_walls.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
         Some(StepLimit {
             name: "wall under a force",
             dt: 2.0 * (servo.mass / (grains * stiffness)).sqrt(),
@@ -124,7 +125,7 @@ impl<D: Dim> Dem<D> {
         Bound {
             name: "overlap of the hardest impact",
             value: 100.0 * deepest / smallest,
-            allowed: 100.0 * crate::kernel::DEEPEST,
+            allowed: 100.0 * crate::view::DEEPEST,
             unit: "% of the radius",
             refuses: true,
             why: format!(
@@ -137,7 +138,7 @@ impl<D: Dim> Dem<D> {
     /// How stiff the contacts of a pair must be for an allowed overlap, when that of its hardest impact over the radius is
     /// too large.
     fn stiffer(&self, pair: Option<&Stiffest>, overlap: f64) -> String {
-        let too_much = overlap / crate::kernel::DEEPEST;
+        let too_much = overlap / crate::view::DEEPEST;
         let Some(pair) = pair.filter(|_| too_much > 1.0) else { return String::new() };
         match self.options.contact {
             ContactModel::Linear => {
@@ -156,13 +157,13 @@ impl<D: Dim> Dem<D> {
         let speed = self.blocks.largest(|i| self.grains.velocity[i].length()).max(0.0);
         let gravity = self.gravity.length();
         let fall = if gravity > 0.0 { (2.0 * gravity * self.extent_along_gravity()).sqrt() } else { 0.0 };
-        let coming = self.traffic.inlets().map(|inlet| inlet.velocity.length()).fold(0.0, f64::max);
-        (speed.max(coming) + self.movers.fastest_ever(), fall)
+        let coming = self.inlets.inlets().map(|inlet| inlet.velocity.length()).fold(0.0, f64::max);
+        (speed.max(coming) + self.moving_walls.fastest_ever(), fall)
     }
 
     /// Radius of the smallest grain that there is or may come in \[m\].
     pub(crate) fn smallest_radius(&self) -> f64 {
-        let of_inlets = self.traffic.inlets().flat_map(|inlet| inlet.radii.iter().copied());
+        let of_inlets = self.inlets.inlets().flat_map(|inlet| inlet.radii.iter().copied());
         of_inlets.fold(self.grains.radius_range().0, f64::min)
     }
 
@@ -176,7 +177,7 @@ impl<D: Dim> Dem<D> {
         let highest = self.blocks.largest(|i| -self.grains.position[i].dot(direction));
         let deepest = self.blocks.largest(|i| self.grains.position[i].dot(direction));
         // Grains that come in fall as far as those that are there.
-        let corners = self.traffic.inlets().flat_map(|inlet| [inlet.low, inlet.high]);
+        let corners = self.inlets.inlets().flat_map(|inlet| [inlet.low, inlet.high]);
         let heights = corners.map(|corner| -corner.dot(direction));
         let (highest, lowest) =
             heights.fold((highest, -deepest), |(high, low), height| (high.max(height), low.min(height)));
@@ -264,26 +265,6 @@ impl<D: Dim> Dem<D> {
         let tension = if self.options.tension == Tension::Cut { "tension cut" } else { "tension kept" };
         format!("{} {}s, {}, {tension}, {arm}", self.size().0, D::BALL, self.pairs.law_name())
     }
-}
-
-/// Power of the overlap of an impact with which its stiffness falls: a linear contact has `overlap ~ k^(-1/2)`.
-pub(crate) const LINEAR: f64 = 2.0;
-/// A Hertz contact has `overlap ~ E^(-2/5)`.
-pub(crate) const HERTZ: f64 = 2.5;
-
-/// By which factor contacts must be stiffer for an overlap that is `too_much` times what is allowed.
-pub(crate) fn softer_than(too_much: f64, power: f64) -> f64 {
-    rounded_up(too_much.powf(power))
-}
-
-/// Rounded up to two digits, so that advice which is followed is enough.
-fn rounded_up(value: f64) -> f64 {
-    if !(value > 0.0 && value.is_finite()) {
-        return value;
-    }
-    let unit = 10.0_f64.powi(value.log10().floor() as i32 - 1);
-    // Printed and read, so that no digits of round-off are shown.
-    format!("{:.1e}", (value / unit).ceil() * unit).parse().unwrap_or(value)
 }
 
 /// Largest stable step of the scheme for a grain with `neighbours` equal contacts.

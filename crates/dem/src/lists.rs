@@ -4,9 +4,8 @@
 //! \[DEM-13\]. Pairs that do not touch add nothing to any sum: a list may be rebuilt at any time
 //! without a change of bits.
 
-use crate::contacts::Receipt;
-use crate::kernel::View;
-use crate::wall::Shape;
+use crate::view::View;
+use granular_core::Shape;
 use granular_core::search::Neighbours;
 use granular_core::{Blocks, Dim, Linear, Section, SnapshotError, Stored};
 use std::ops::Range;
@@ -16,6 +15,22 @@ use std::ops::Range;
 pub(crate) struct NearWall {
     pub(crate) grain: u32,
     pub(crate) wall: u32,
+}
+
+/// Where to collect: grain within the block, owing block, and place there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receipt {
+    pub(crate) grain: u32,
+    pub(crate) block: u32,
+    pub(crate) place: u32,
+}
+
+impl Receipt {
+    /// Grains first keeps writes in order of memory. The key is unique, so that an unstable sort,
+    /// which does not allocate, has one outcome.
+    pub(crate) fn order(&self) -> (u32, u32, u32) {
+        (self.grain, self.block, self.place)
+    }
 }
 
 /// The pairs of the grains of one block with all earlier grains.

@@ -6,6 +6,8 @@ mod pair;
 pub use elasticity::{Elasticity, HertzImpact};
 pub use pair::PairOverride;
 
+pub use granular_core::SetupError;
+
 /// What a grain or wall is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -272,37 +274,6 @@ impl Materials {
         (0..n).flat_map(move |a| (a..n).map(move |b| (a, b))).map(|(a, b)| (a, b, self.pair(a, b)))
     }
 }
-
-/// Why a set-up is refused.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SetupError {
-    /// What is wrong.
-    pub what: String,
-    /// The value given.
-    pub value: f64,
-    /// What is allowed.
-    pub allowed: &'static str,
-}
-
-impl SetupError {
-    pub(crate) fn new(what: impl Into<String>, value: f64, allowed: &'static str) -> Self {
-        Self { what: what.into(), value, allowed }
-    }
-}
-
-impl std::fmt::Display for SetupError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { what, value, allowed } = self;
-        // No rows of zeros.
-        if value.is_normal() && (1e-9..1e12).contains(&value.abs()) || *value == 0.0 || !value.is_finite() {
-            write!(f, "{what} is {value}, but must be {allowed}")
-        } else {
-            write!(f, "{what} is {value:e}, but must be {allowed}")
-        }
-    }
-}
-
-impl std::error::Error for SetupError {}
 
 fn check(material: &Material) -> Result<(), SetupError> {
     let positive = "positive and finite";

@@ -2,7 +2,7 @@
 
 use crate::grains::Grain;
 use crate::material::{Materials, SetupError, Tension};
-use crate::wall::Wall;
+use crate::walls::Wall;
 use granular_core::Dim;
 
 /// Where a contact force acts.

@@ -1,9 +1,8 @@
 //! Shaking: an acceleration that all grains feel beside gravity, as on a table that is shaken and seen from it.
 
-use crate::dem::Dem;
-use crate::grains::check_finite;
 use crate::material::SetupError;
 use core::f64::consts::TAU;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
 
 /// Name in a snapshot.
@@ -32,7 +31,7 @@ impl<D: Dim> Shaking<D> {
         self.acceleration * (TAU * turns).sin()
     }
 
-    fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         let positive = |what: &str, value: f64| {
             let fits = value > 0.0 && value.is_finite();
             if fits { Ok(()) } else { Err(SetupError::new(what, value, "positive and finite")) }
@@ -50,32 +49,9 @@ impl<D: Dim> Shaking<D> {
 /// A shaking and its age.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shaken<D: Dim> {
-    shaking: Shaking<D>,
+    pub(crate) shaking: Shaking<D>,
     /// Time since its start \[s\]: a sum of steps, so that it does not matter how they are split into calls.
-    age: f64,
-}
-
-impl<D: Dim> Dem<D> {
-    /// Starts a shaking, or ends it.
-    ///
-    /// # Errors
-    /// When a value is out of range, or the grains are in a periodic cell.
-    pub fn set_shaking(&mut self, shaking: Option<Shaking<D>>) -> Result<(), SetupError> {
-        if shaking.is_some() && self.cell.is_some() {
-            return Err(SetupError::new("number of periodic cells that are shaken", 1.0, "0"));
-        }
-        shaking.iter().try_for_each(Shaking::check)?;
-        self.shaken = shaking.map(|shaking| Shaken { shaking, age: 0.0 });
-        Ok(())
-    }
-
-    /// What shakes the grains in the middle of a step of `dt` \[m/s^2\]; the step makes it older.
-    pub(crate) fn shake(&mut self, dt: f64) -> Option<D::Vec> {
-        let shaken = self.shaken.as_mut()?;
-        let acceleration = shaken.shaking.at(shaken.age + 0.5 * dt);
-        shaken.age += dt;
-        Some(acceleration)
-    }
+    pub(crate) age: f64,
 }
 
 /// Saves a shaking that goes on; a scene without one saves nothing.
@@ -93,6 +69,6 @@ pub(crate) fn restore<D: Dim>(from: &Section) -> Result<Option<Shaken<D>>, Snaps
     let acceleration = from.array_of("acceleration of shaking", 1)?[0];
     let numbers: Vec<f64> = from.array_of(NUMBERS, 4)?;
     let shaking = Shaking { acceleration, from: numbers[0], to: numbers[1], pass: numbers[2] };
-    check_finite(NUMBERS, shaking.check().is_ok() && numbers[3].is_finite() && numbers[3] >= 0.0)?;
+    check_entry(NUMBERS, shaking.check().is_ok() && numbers[3].is_finite() && numbers[3] >= 0.0)?;
     Ok(Some(Shaken { shaking, age: numbers[3] }))
 }

@@ -1,10 +1,10 @@
 //! What the solver shows: energies, the front of the flow, fields and contacts. Everything is
 //! computed from the state when it is asked for.
 
-use crate::contacts::{Contact, Partner};
+use crate::contact::{Contact, Partner};
 use crate::dem::Dem;
-use crate::kernel::View;
 use crate::ledger::Losses;
+use crate::view::View;
 use granular_core::glam::DVec3;
 use granular_core::{Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
 
@@ -61,10 +61,11 @@ impl<D: Dim> Dem<D> {
     }
 
     /// What the energy ledger misses \[J\]: energy at the start and put in since, less the
-    /// present energy and all losses; the work of moving walls is put in. `None` unless the ledger is kept.
+    /// present energy and all losses; the work of moving walls and of loads of others is put in. `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
         let initial = self.initial_energy?;
-        let put_in = self.injected + self.movers.work + self.cell().map_or(0.0, |cell| cell.work());
+        let of_cell = self.cell().map_or(0.0, |cell| cell.work());
+        let put_in = self.injected + self.moving_walls.work + of_cell + self.load_work;
         Some(initial + put_in - self.energies().mechanical() - self.losses.total())
     }
 
@@ -226,6 +227,10 @@ const NUMBERS: &[(&str, &str, &str)] = &[
 const WALL_WORK: (&str, &str, &str) =
     ("wall_work", "J", "work of moving walls on grains; with the ledger only");
 
+/// Shown when others put loads on grains.
+const LOAD_WORK: (&str, &str, &str) =
+    ("load_work", "J", "work of the loads of others, such as a fluid, on grains; with the ledger only");
+
 const FIELDS: &[(&str, &str, &str)] = &[
     ("radius", "m", "radius"),
     ("velocity", "m/s", "velocity; in a cell that deforms its flow is part of it"),
@@ -259,11 +264,14 @@ impl<D: Dim> Dem<D> {
                 list.push(Shown::new(name, "N", "force on the wall", ShownAs::Number));
             }
         }
-        if !self.movers.is_empty() {
+        if !self.moving_walls.is_empty() {
             list.push(shown(ShownAs::Number)(&WALL_WORK));
         }
+        if self.grains.takes_loads {
+            list.push(shown(ShownAs::Number)(&LOAD_WORK));
+        }
         list.extend(self.wall_catalogue());
-        list.extend(self.traffic_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
+        list.extend(self.exchange_numbers().map(|(number, _)| shown(ShownAs::Number)(&number)));
         list.extend(self.cell_catalogue());
         list.extend(FIELDS.iter().map(shown(ShownAs::Field)));
         list.extend(LINKS.iter().map(shown(ShownAs::Link)));
@@ -275,12 +283,15 @@ impl<D: Dim> Dem<D> {
         self.show_wall_forces(sink);
         self.show_wall_numbers(sink);
         for ((name, unit, _), value) in
-            self.traffic_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
+            self.exchange_numbers().filter(|((name, ..), _)| sink.wants(name)).collect::<Vec<_>>()
         {
             sink.number(name, unit, value);
         }
-        if !self.movers.is_empty() && sink.wants(WALL_WORK.0) {
+        if !self.moving_walls.is_empty() && sink.wants(WALL_WORK.0) {
             sink.number(WALL_WORK.0, WALL_WORK.1, self.wall_work());
+        }
+        if self.grains.takes_loads && sink.wants(LOAD_WORK.0) {
+            sink.number(LOAD_WORK.0, LOAD_WORK.1, self.load_work());
         }
         self.show_cell(sink);
         self.show_fields(sink);

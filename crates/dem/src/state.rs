@@ -1,11 +1,15 @@
 //! What a snapshot holds: grains, memories of contacts, and what changes between stages.
 
 use crate::dem::Dem;
-use crate::grains::check_finite;
 use crate::ledger::Losses;
 use crate::material::MaterialId;
 use crate::shaking;
+use granular_core::snapshot::check_entry;
 use granular_core::{Dim, Linear, Section, SnapshotError};
+
+/// Names in a snapshot.
+const FREE_SPINS: &str = "spins without friction";
+const LOAD_WORK: &str = "work of loads";
 
 impl<D: Dim> Dem<D> {
     pub(crate) fn save_state(&self, to: &mut Section) {
@@ -16,6 +20,12 @@ impl<D: Dim> Dem<D> {
         to.put("gravity", &[self.gravity]);
         shaking::save(self.shaken.as_ref(), to);
         to.put("losses", &self.losses.to_array());
+        if self.turns() && !self.pairs.tangential() {
+            to.put_one(FREE_SPINS, 1_u8);
+        }
+        if self.grains.takes_loads {
+            to.put_one(LOAD_WORK, self.load_work);
+        }
         to.put("energy put in and at the start", &[self.injected, self.initial_energy.unwrap_or(0.0)]);
         if let Some(cell) = self.cell() {
             cell.save(to);
@@ -28,13 +38,13 @@ impl<D: Dim> Dem<D> {
         if self.keeps_time() {
             self.clock.save(to);
         }
-        self.movers.save(to);
-        self.traffic.save(to);
+        self.moving_walls.save(to);
+        self.inlets.save(to);
     }
 
     /// Whether anything depends on the time.
     fn keeps_time(&self) -> bool {
-        !self.movers.is_empty() || !self.traffic.is_empty()
+        !self.moving_walls.is_empty() || !self.inlets.is_empty()
     }
 
     pub(crate) fn restore_state(&mut self, from: &Section) -> Result<(), SnapshotError> {
@@ -44,9 +54,12 @@ impl<D: Dim> Dem<D> {
         }
         // Not asked of the friction: grains go on turning after it was taken away.
         let turning = !from.array::<D::Spin>("spin")?.is_empty();
-        self.take_materials(turning);
-        let (turns, any_number) = (self.pairs.tangential(), !self.traffic.is_empty());
-        self.grains.restore(from, turns, any_number)?;
+        let freely = from.entries().any(|(name, _)| name == FREE_SPINS);
+        self.take_materials(turning && !freely);
+        if freely {
+            self.let_turn();
+        }
+        self.grains.restore(from, !self.inlets.is_empty())?;
         let blocks = self.cut();
         self.pairs.resize(blocks);
         self.pairs.restore(from, &self.grains, &self.walls)?;
@@ -61,20 +74,22 @@ impl<D: Dim> Dem<D> {
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
         let energy: Vec<f64> = from.array_of("energy put in and at the start", 2)?;
         self.injected = energy[0];
+        self.load_work = if self.grains.takes_loads { from.one(LOAD_WORK)? } else { 0.0 };
+        check_entry(LOAD_WORK, self.load_work.is_finite())?;
         self.initial_energy = self.options.ledger.then_some(energy[1]);
         let open: Vec<u8> = from.array_of("open walls", self.walls.len())?;
         self.walls.iter_mut().zip(open).for_each(|(wall, open)| wall.open = open != 0);
-        check_finite("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
-        check_finite("last step taken", self.last_dt.is_finite() && self.last_dt >= 0.0)?;
-        check_finite("gravity", self.gravity.is_finite())?;
-        check_finite("losses", losses.iter().all(|loss| loss.is_finite()))?;
-        check_finite("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
+        check_entry("friction", friction.iter().all(|mu| mu.is_finite() && *mu >= 0.0))?;
+        check_entry("last step taken", self.last_dt.is_finite() && self.last_dt >= 0.0)?;
+        check_entry("gravity", self.gravity.is_finite())?;
+        check_entry("losses", losses.iter().all(|loss| loss.is_finite()))?;
+        check_entry("energy put in and at the start", energy.iter().all(|e| e.is_finite()))?;
         if self.keeps_time() {
             self.clock.restore(from)?;
         }
-        self.movers.restore(from)?;
-        self.movers.place(self.clock.time());
-        self.traffic.restore(from)?;
+        self.moving_walls.restore(from)?;
+        self.moving_walls.place(self.clock.time());
+        self.inlets.restore(from)?;
         self.list(0.0, None);
         Ok(())
     }

@@ -4,7 +4,6 @@
 //! [`model::Model`], and run stage by stage.
 
 pub mod calibrate;
-pub mod chance;
 pub mod check;
 pub mod compare;
 mod effort;

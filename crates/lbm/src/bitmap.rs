@@ -1,9 +1,9 @@
 //! Obstacles drawn as images.
 
 use crate::setup::SetupError;
-use crate::shape::Shape;
 use granular_core::D2;
 use granular_core::glam::DVec2;
+use granular_core::shape::SolidShape;
 
 /// Which pixels of an image are solid. Brightness goes from 0, black, to 1, white.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub enum Solid {
 ///
 /// ```
 /// use granular_core::glam::DVec2;
-/// use granular_lbm::{Bitmap, Shape};
+/// use granular_lbm::{Bitmap, SolidShape};
 ///
 /// // A step, its lowest row first, in pixels of 1 mm.
 /// let step = Bitmap::new(DVec2::ZERO, 1e-3, [3, 2], &[true, true, true, true, false, false])?;
@@ -109,7 +109,7 @@ impl Bitmap {
     }
 }
 
-impl Shape<D2> for Bitmap {
+impl SolidShape<D2> for Bitmap {
     fn contains(&self, point: DVec2) -> bool {
         let at = (point - self.low) / self.spacing;
         let [width, height] = self.size;

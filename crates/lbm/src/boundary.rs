@@ -8,7 +8,7 @@ use crate::openings::open_faces;
 use crate::populations::Grid;
 use crate::real::Real;
 use crate::setup::{Face, Setup};
-use crate::shape::Shape;
+use granular_core::shape::SolidShape;
 use granular_core::{Dim, Vector};
 
 /// What lies beyond the fluid.
@@ -314,7 +314,7 @@ struct Meeting<V> {
 
 /// Where a link from the centre of a cell towards that of its neighbour meets a shape that covers a third centre: that of the neighbour
 /// or, where the link ends in a mirror, of its image. Mirrors lie half-way.
-fn meeting<D: Dim>(shape: &dyn Shape<D>, [outside, beside, inside]: [D::Vec; 3]) -> Meeting<D::Vec> {
+fn meeting<D: Dim>(shape: &dyn SolidShape<D>, [outside, beside, inside]: [D::Vec; 3]) -> Meeting<D::Vec> {
     let on = |from: D::Vec, to: D::Vec| {
         let share = shape.crossing(from, to);
         // From the centre on, so that a shift changes no bit.

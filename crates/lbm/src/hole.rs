@@ -1,7 +1,6 @@
 //! Bodies that surround the fluid.
 
-use crate::setup::SetupError;
-use crate::shape::Shape;
+use granular_core::shape::{ShapeError, SolidShape};
 use granular_core::{Dim, Vector};
 
 /// The body that fills all space outside of a shape, whose inside is the fluid: a tank, a pipe (with
@@ -12,7 +11,7 @@ use granular_core::{Dim, Vector};
 ///
 /// ```
 /// use granular_core::{D2, glam::DVec2};
-/// use granular_lbm::{Ball, Hole, Shape};
+/// use granular_lbm::{Ball, SolidShape, Hole};
 ///
 /// let tank = Hole(Ball::<D2> { centre: DVec2::ZERO, radius: 1.0 });
 /// assert!(!tank.contains(DVec2::ZERO) && tank.contains(DVec2::new(1.1, 0.0)));
@@ -22,12 +21,12 @@ use granular_core::{Dim, Vector};
 #[derive(Clone, Copy, Debug)]
 pub struct Hole<S>(pub S);
 
-impl<D: Dim, S: Shape<D>> Shape<D> for Hole<S> {
+impl<D: Dim, S: SolidShape<D>> SolidShape<D> for Hole<S> {
     fn contains(&self, point: D::Vec) -> bool {
         !self.0.contains(point)
     }
 
-    fn check(&self) -> Result<(), SetupError> {
+    fn check(&self) -> Result<(), ShapeError> {
         self.0.check()
     }
 
@@ -45,33 +44,11 @@ impl<D: Dim, S: Shape<D>> Shape<D> for Hole<S> {
         self.0.reach()
     }
 
+    fn distance(&self, point: D::Vec) -> Option<(f64, D::Vec)> {
+        self.0.distance(point).map(|(distance, normal)| (-distance, -normal))
+    }
+
     fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
         (1.0 - self.0.crossing(inside, outside)).clamp(f64::MIN_POSITIVE, 1.0)
-    }
-}
-
-impl<D: Dim> Shape<D> for std::sync::Arc<dyn Shape<D>> {
-    fn contains(&self, point: D::Vec) -> bool {
-        (**self).contains(point)
-    }
-
-    fn check(&self) -> Result<(), SetupError> {
-        (**self).check()
-    }
-
-    fn bounds(&self) -> (D::Vec, D::Vec) {
-        (**self).bounds()
-    }
-
-    fn centre(&self) -> D::Vec {
-        (**self).centre()
-    }
-
-    fn reach(&self) -> f64 {
-        (**self).reach()
-    }
-
-    fn crossing(&self, outside: D::Vec, inside: D::Vec) -> f64 {
-        (**self).crossing(outside, inside)
     }
 }

@@ -34,7 +34,7 @@
 //! | eddy viscosity | Smagorinsky in closed form, `(C h)^2 sqrt(2 S:S)` | \[Hou1996\] |
 //! | body force | second order, relaxed by the same rates; constant, or varying in space and time ([`BodyForce`]) | \[Guo2002\] |
 //! | [`Face`] | periodic, wall at rest, moving or with a profile of velocities, slip length, free slip, velocity, pressure, absorbing | \[ZouHe1997; HechtHarting2010; Latt2008; PoinsotLele1992; IzquierdoFueyo2008\] |
-//! | [`Obstacle`] | any [`Shape`], also from an image ([`Bitmap`]) or around the fluid ([`Hole`]); half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
+//! | [`Obstacle`] | any [`SolidShape`], also from an image ([`Bitmap`]) or around the fluid ([`Hole`]); half-way or interpolated wall | \[Bouzidi2001; Yu2003\] |
 //! | number type | `f64`, `f32` | |
 //!
 //! [`Setup::for_flow`] finds cells and step from length, speed, viscosity and resolution; [`Lbm::flow_field`] gives pressure and
@@ -83,7 +83,6 @@ mod relax;
 mod rows;
 mod scales;
 mod setup;
-mod shape;
 mod show;
 mod solver;
 #[cfg(feature = "serde")]
@@ -96,6 +95,7 @@ pub use body_force::BodyForce;
 pub use collision::{OddRate, Operator};
 pub use flow_field::FlowField;
 pub use gauge::Gauge;
+pub use granular_core::shape::{Ball, Block, Extruded, Polygon, ShapeError, SolidShape};
 pub use hole::Hole;
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
@@ -106,7 +106,6 @@ pub use pages::Pages;
 pub use real::Real;
 pub use scales::FlowScales;
 pub use setup::{Face, Profile, Setup, SetupError};
-pub use shape::{Ball, Block, Extruded, Polygon, Shape};
 
 /// A fluid in the plane, per metre of depth.
 pub type Lbm2 = Lbm<D2Q9, 9>;

@@ -2,7 +2,7 @@
 
 use crate::links::WallScheme;
 use crate::setup::{Face, Setup, SetupError};
-use crate::shape::Shape;
+use granular_core::shape::SolidShape;
 use granular_core::{Dim, Linear, Motion, Vector};
 use std::fmt;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub struct Obstacle<D: Dim> {
     /// Name, for `force_on_<name>_x`.
     pub name: String,
     /// Shape, where it was made.
-    pub shape: Arc<dyn Shape<D>>,
+    pub shape: Arc<dyn SolidShape<D>>,
     /// How its surface is met.
     pub wall: WallScheme,
     /// How far the shape has moved from where it was made \[m\].
@@ -38,7 +38,7 @@ pub struct Reference {
 
 impl<D: Dim> Obstacle<D> {
     /// A body at rest with interpolated wall.
-    pub fn new(name: impl Into<String>, shape: impl Shape<D> + 'static) -> Self {
+    pub fn new(name: impl Into<String>, shape: impl SolidShape<D> + 'static) -> Self {
         Self {
             name: name.into(),
             shape: Arc::new(shape),
@@ -53,7 +53,7 @@ impl<D: Dim> Obstacle<D> {
     /// Whether shape, motion and reference make sense.
     pub(crate) fn check(&self) -> Result<(), SetupError> {
         let of = |what: &str| format!("{what} of obstacle `{}`", self.name);
-        self.shape.check().map_err(|error| SetupError { what: of(&error.what), ..error })?;
+        self.shape.check().map_err(|error| SetupError::new(of(&error.what), error.value, error.allowed))?;
         let motion = [
             ("displacement", self.displacement.is_finite(), format!("{:?} m", self.displacement)),
             ("velocity", self.velocity.is_finite(), format!("{:?} m/s", self.velocity)),

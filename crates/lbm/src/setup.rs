@@ -6,6 +6,7 @@ use crate::gauge::Gauge;
 use crate::obstacle::Obstacle;
 use crate::obstacle::{Domain, cells_of};
 use crate::open::OpenScheme;
+use granular_core::shape::ShapeError;
 use granular_core::{Dim, Linear};
 use std::collections::HashSet;
 use std::fmt;
@@ -26,7 +27,7 @@ pub struct Setup<D: Dim> {
     pub viscosity: f64,
     /// Density \[kg/m^3\].
     pub density: f64,
-    /// Body force per mass \[m/s^2\]; its force density is that of the density given, not of the local one.
+    /// SolidShape force per mass \[m/s^2\]; its force density is that of the density given, not of the local one.
     pub acceleration: D::Vec,
     /// A body force that varies in space or time, beside the acceleration; none by default.
     pub body_force: Option<BodyForce<D>>,
@@ -388,3 +389,10 @@ impl fmt::Display for SetupError {
 }
 
 impl std::error::Error for SetupError {}
+
+impl From<ShapeError> for SetupError {
+    fn from(error: ShapeError) -> Self {
+        let ShapeError { what, value, allowed } = error;
+        Self { what, value, allowed }
+    }
+}

@@ -105,16 +105,16 @@ fn has_the_bits_alone<D: Dim, L: ContactLaw<D>>(
     law: &L,
 ) -> bool {
     let k = to.place as usize;
-    let (meeting, arms) = batch.pair(k).meet::<L>(view);
+    let (kinematics, arms) = batch.pair(k).meet::<L>(view);
     let (mut memory, mut tally) = (L::Memory::default(), Tally::<true>::default());
-    law.load(&meeting, &mut memory, &mut tally);
+    law.load(&kinematics, &mut memory, &mut tally);
     let before = tally.losses();
-    let load = law.load(&meeting, &mut memory, &mut tally);
-    assert_eq!(batch.presence[k], meeting.presence);
-    if meeting.presence == 0.0 {
+    let load = law.load(&kinematics, &mut memory, &mut tally);
+    assert_eq!(batch.presence[k], kinematics.presence);
+    if kinematics.presence == 0.0 {
         return false;
     }
-    assert_eq!(batch.force[k], push_of::<D, L>(&load, meeting.normal));
+    assert_eq!(batch.force[k], push_of::<D, L>(&load, kinematics.normal));
     assert_eq!(batch.torques[1][k], -load.rolling - load.tangential * arms.1);
     assert_eq!(batch.memories[k], memory);
     let (given, both) = (batch.losses(k).total(), tally.losses().total());

@@ -4,7 +4,7 @@
 //! effective mass, `delta` overlap, `a = sqrt(R delta)` radius of the contact area.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Load, Meeting};
+use super::{ContactLaw, Frictional, Kinematics, Load};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -52,7 +52,7 @@ struct Area {
 
 impl HertzNormal {
     #[inline(always)]
-    fn area<D: Dim>(&self, m: &Meeting<D>) -> Area {
+    fn area<D: Dim>(&self, m: &Kinematics<D>) -> Area {
         let stiffness = 4.0 / 3.0 * self.modulus;
         if m.presence < 1.0 {
             // The overlap runs from zero to `deepest` or back.
@@ -78,18 +78,18 @@ impl HertzNormal {
     #[inline(always)]
     fn load_on<D: Dim, const LEDGER: bool>(
         &self,
-        m: &Meeting<D>,
+        m: &Kinematics<D>,
         area: &Area,
         tally: &mut Tally<LEDGER>,
     ) -> Load<D> {
         let force = self.force(area, m.presence, m.approach);
-        // Of what the prediction adds, the spring keeps half (see `Meeting::kept`) in a linear contact, and nearly so in an
+        // Of what the prediction adds, the spring keeps half (see `Kinematics::kept`) in a linear contact, and nearly so in an
         // impact of this one: the balance is better by 4 to 40 times.
         tally.normal_damping(|| m.damped(force, area.force, 0.5 * area.damping));
         Load::along_normal(force)
     }
 
-    fn rest<D: Dim>(&self, m: &Meeting<D>) -> (Load<D>, f64) {
+    fn rest<D: Dim>(&self, m: &Kinematics<D>) -> (Load<D>, f64) {
         let area = self.area(m);
         (Load::along_normal(self.force(&area, 1.0, m.approach)), 0.4 * area.force * m.overlap)
     }
@@ -120,13 +120,13 @@ impl<D: Dim> ContactLaw<D> for HertzNormal {
     }
 
     #[inline(always)]
-    fn load<const LEDGER: bool>(&self, m: &Meeting<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
         self.load_on(m, &self.area(m), tally)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Meeting<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
         self.rest(m)
     }
 }
@@ -163,8 +163,8 @@ impl<D: Dim> Frictional<D> for HertzMindlin {
         ["Hertz-Mindlin with rolling resistance", "Hertz-Mindlin with rolling and twisting resistance"];
 
     #[inline(always)]
-    fn slider(&self, meeting: &Meeting<D>) -> Slider {
-        self.slider_on(&self.normal.area(meeting))
+    fn slider(&self, kinematics: &Kinematics<D>) -> Slider {
+        self.slider_on(&self.normal.area(kinematics))
     }
 
     #[inline(always)]
@@ -205,7 +205,7 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,
-        m: &Meeting<D>,
+        m: &Kinematics<D>,
         (spring, stiffness): &mut (D::Spin, f64),
         tally: &mut Tally<LEDGER>,
     ) -> Load<D> {
@@ -232,7 +232,7 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         memory
     }
 
-    fn at_rest(&self, m: &Meeting<D>, (spring, stiffness): (D::Spin, f64)) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (Load<D>, f64) {
         let (mut load, energy): (Load<D>, f64) = self.normal.rest(m);
         let cap = self.friction * load.normal.max(0.0);
         let slider = self.slider_on(&self.normal.area(m));

@@ -1,7 +1,7 @@
 //! Linear springs and dashpots.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Load, Meeting};
+use super::{ContactLaw, Frictional, Kinematics, Load};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -38,7 +38,7 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
     }
 
     #[inline(always)]
-    fn load<const LEDGER: bool>(&self, m: &Meeting<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
         let damping = self.damping_factor * m.effective_mass.sqrt();
         let force = self.force(m.overlap, m.presence, m.approach, damping);
         tally
@@ -48,7 +48,7 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Meeting<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
         let damping = self.damping_factor * m.effective_mass.sqrt();
         let force = self.force(m.overlap, 1.0, m.approach, damping);
         (Load::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
@@ -83,8 +83,8 @@ impl<D: Dim> Frictional<D> for LinearFrictional {
     ];
 
     #[inline(always)]
-    fn slider(&self, meeting: &Meeting<D>) -> Slider {
-        self.slider(meeting.effective_mass)
+    fn slider(&self, kinematics: &Kinematics<D>) -> Slider {
+        self.slider(kinematics.effective_mass)
     }
 
     #[inline(always)]
@@ -119,7 +119,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,
-        m: &Meeting<D>,
+        m: &Kinematics<D>,
         memory: &mut D::Spin,
         tally: &mut Tally<LEDGER>,
     ) -> Load<D> {
@@ -149,7 +149,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         memory
     }
 
-    fn at_rest(&self, m: &Meeting<D>, memory: D::Spin) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, memory: D::Spin) -> (Load<D>, f64) {
         let (mut load, energy) = self.normal.at_rest(m, ());
         let cap = self.friction * load.normal.max(0.0);
         let slider = self.slider(m.effective_mass);

@@ -1,7 +1,8 @@
 //! Resistance against rolling and twisting, for any law with a tangential spring.
 
+use super::linear::LinearFrictional;
 use super::slider::Motion;
-use super::{ContactLaw, Frictional, Load, Meeting};
+use super::{ContactLaw, Frictional, Kinematics, Load};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::Dim;
@@ -32,7 +33,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,
-        m: &Meeting<D>,
+        m: &Kinematics<D>,
         (grip, rolling): &mut (F::Memory, D::Spin),
         tally: &mut Tally<LEDGER>,
     ) -> Load<D> {
@@ -60,7 +61,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         (F::reversed(grip), -rolling)
     }
 
-    fn at_rest(&self, m: &Meeting<D>, (grip, rolling): (F::Memory, D::Spin)) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (Load<D>, f64) {
         let (mut load, energy) = self.frictional.at_rest(m, grip);
         let cap = self.rolling_friction * load.normal.max(0.0);
         let (rate, last) = (m.roll * m.effective_radius, self.frictional.last_stiffness(&grip));
@@ -69,6 +70,9 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         (load, energy + stored)
     }
 }
+
+/// [`LinearFrictional`] with rolling resistance.
+pub type LinearRolling = Rolling<LinearFrictional>;
 
 /// [`Rolling`] with a spring against twisting, turning of two grains about their normal: again of
 /// the same stiffness and damping, its moment capped at `twisting_friction * F_n * effective
@@ -104,7 +108,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
     #[inline(always)]
     fn load<const LEDGER: bool>(
         &self,
-        m: &Meeting<D>,
+        m: &Kinematics<D>,
         (rolling, twisting): &mut Twisted<D, F>,
         tally: &mut Tally<LEDGER>,
     ) -> Load<D> {
@@ -134,7 +138,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         (<Rolling<F> as ContactLaw<D>>::reversed(rolling), twisting)
     }
 
-    fn at_rest(&self, m: &Meeting<D>, (rolling, twisting): Twisted<D, F>) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (Load<D>, f64) {
         let (mut load, energy) = self.rolling.at_rest(m, rolling);
         let cap = self.twisting_friction * load.normal.max(0.0);
         let frictional = &self.rolling.frictional;

@@ -1,6 +1,6 @@
 //! Springs that slide at a cap.
 
-use super::Meeting;
+use super::Kinematics;
 use granular_core::{Dim, Linear};
 
 /// A spring and dashpot side by side that slide when their force reaches a cap \[DEM-6,
@@ -61,7 +61,7 @@ pub struct Motion<S> {
 impl<S> Motion<S> {
     /// At these rates in the middle and at the start of the step.
     #[inline(always)]
-    pub fn of<D: Dim>(m: &Meeting<D>, rate: S, start_rate: S) -> Self {
+    pub fn of<D: Dim>(m: &Kinematics<D>, rate: S, start_rate: S) -> Self {
         let enters = m.presence < 1.0 && m.approach > 0.0;
         Self { rate, start_rate, presence: m.presence, enters, dt: m.dt, last_dt: m.last_dt }
     }
@@ -90,7 +90,7 @@ impl Slider {
         if size <= cap * cap {
             let slid = self.at_ends(*spring, trial, motion);
             *spring = trial + motion.start_rate * after;
-            // What the prediction adds to the rate counts against it: see `Meeting::damped`.
+            // What the prediction adds to the rate counts against it: see `Kinematics::damped`.
             let gained = rate - motion.start_rate;
             let squared = rate.length_squared() - 2.0 * gained.length_squared();
             return Slid { force: stuck, damped: damping * squared * dt, slid };

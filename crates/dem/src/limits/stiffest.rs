@@ -1,4 +1,4 @@
-//! The stiffest meeting of two materials, and the step that it bears.
+//! The stiffest contact of two materials, and the step that it bears.
 
 use crate::dem::Dem;
 use crate::material::{PairProperties, Tension};
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// the speeds.
 const LEAST_OVERLAP: f64 = 1e-4;
 
-/// The stiffest meeting that a scene allows between two materials.
+/// The stiffest contact that a scene allows between two materials.
 pub(super) struct Stiffest {
     pub(super) oscillator: Oscillator,
     /// Stiffness along the normal \[N/m\].
@@ -24,7 +24,7 @@ pub(super) struct Stiffest {
     pub(super) deepest: f64,
     pub(super) names: String,
     /// What was assumed.
-    pub(super) meeting: String,
+    pub(super) assumed: String,
 }
 
 /// Two grains on springs.
@@ -103,7 +103,7 @@ impl<D: Dim> Dem<D> {
                 *place = (self.grains.mass[index], self.grains.radius[index]);
             }
         }
-        for inlet in self.traffic.inlets() {
+        for inlet in self.inlets.inlets() {
             let density = self.materials.get(inlet.material).density;
             let place = &mut lightest[inlet.material.0 as usize];
             for &radius in &inlet.radii {
@@ -169,7 +169,7 @@ impl<D: Dim> Dem<D> {
             speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
             names: names.to_owned(),
-            meeting: "lightest grains".to_owned(),
+            assumed: "lightest grains".to_owned(),
         }
     }
 
@@ -195,7 +195,7 @@ impl<D: Dim> Dem<D> {
             speed,
             deepest,
             names: names.to_owned(),
-            meeting: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
+            assumed: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
         }
     }
 
@@ -206,7 +206,7 @@ impl<D: Dim> Dem<D> {
             let elasticity = material.elasticity?;
             Some(elasticity.rayleigh_time(self.grains.radius[index], material.density))
         };
-        let of_inlets = self.traffic.inlets().flat_map(|inlet| {
+        let of_inlets = self.inlets.inlets().flat_map(|inlet| {
             let material = self.materials.get(inlet.material);
             let times =
                 move |&radius: &f64| Some(material.elasticity?.rayleigh_time(radius, material.density));

@@ -4,7 +4,7 @@ use crate::sample::free;
 use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, FieldRef, FieldSink, Linear, Solver, SymmetricTensor, Vector};
 use granular_dem::{
-    Cell, CellControl, CoarseGrid, Control, Dem, Grain, Material, MaterialId, Materials, Options,
+    CellControl, CoarseGrid, Control, Dem, Grain, Material, MaterialId, Materials, Options, PeriodicCell,
 };
 
 const SPACING: f64 = 0.01;
@@ -24,7 +24,7 @@ fn lattice<D: Dim>(side: usize, radius: f64) -> Dem<D> {
     let grains = (0..side.pow(D::N as u32)).map(|index| grain(index, id)).collect();
     let mut dem = free::<D>(materials, grains, Options::default());
     let size = D::Vec::splat(SPACING * side as f64);
-    dem.set_cell(Cell::new(D::Vec::ZERO, size, &vec![true; D::N]).unwrap()).unwrap();
+    dem.set_cell(PeriodicCell::new(D::Vec::ZERO, size, &vec![true; D::N]).unwrap()).unwrap();
     dem
 }
 

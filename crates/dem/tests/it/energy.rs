@@ -4,7 +4,7 @@ use crate::conservation::{Case, any_case, cases};
 use crate::sample::{Lattice, Random, down};
 use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
-use granular_dem::law::Meeting;
+use granular_dem::law::Kinematics;
 use granular_dem::{
     ContactLaw, ContactModel, Dem, Dem2, Elasticity, Grain, LinearFrictional, LinearRolling, Material,
     Materials, Options, PairProperties, Setup, Tally, Tension, Wall,
@@ -140,7 +140,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
     let mut tally = Tally::<true>::default();
     let mut cycle = Cycle { scale: friction * 1e6 * overlap * hold, ..Cycle::default() };
     let normal = D::Vec::along(0, 1.0);
-    let mut meeting = Meeting::<D> {
+    let mut kinematics = Kinematics::<D> {
         normal,
         overlap,
         presence: 1.0,
@@ -158,7 +158,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
         dt,
         last_dt: dt,
     };
-    let before = law.at_rest(&meeting, memory).1;
+    let before = law.at_rest(&kinematics, memory).1;
     // Back and forth: random speeds, each held for some steps, returning in the end.
     let mut path = Vec::new();
     for _ in 0..12 {
@@ -168,16 +168,16 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
     let back: Vec<_> = path.iter().map(|&rate| -rate).collect();
     for rate in path.into_iter().chain(back) {
         // The rate between two steps is the mean of theirs.
-        meeting.start_slip = (meeting.slip + rate) * 0.5;
-        meeting.slip = rate;
-        meeting.start_roll = meeting.start_slip * (1.0 / meeting.effective_radius);
-        meeting.roll = rate * (1.0 / meeting.effective_radius);
-        let load = law.load(&meeting, &mut memory, &mut tally);
-        cycle.work -= (load.tangential.dot(meeting.slip) + load.rolling.dot(meeting.roll)) * dt;
+        kinematics.start_slip = (kinematics.slip + rate) * 0.5;
+        kinematics.slip = rate;
+        kinematics.start_roll = kinematics.start_slip * (1.0 / kinematics.effective_radius);
+        kinematics.roll = rate * (1.0 / kinematics.effective_radius);
+        let load = law.load(&kinematics, &mut memory, &mut tally);
+        cycle.work -= (load.tangential.dot(kinematics.slip) + load.rolling.dot(kinematics.roll)) * dt;
     }
-    meeting.slip = <D::Spin as Linear>::ZERO;
-    meeting.roll = <D::Spin as Linear>::ZERO;
-    cycle.stored = law.at_rest(&meeting, memory).1 - before;
+    kinematics.slip = <D::Spin as Linear>::ZERO;
+    kinematics.roll = <D::Spin as Linear>::ZERO;
+    cycle.stored = law.at_rest(&kinematics, memory).1 - before;
     cycle.lost = lost(&tally);
     cycle
 }

@@ -4,7 +4,7 @@ use crate::conservation::cases;
 use crate::impact::order;
 use crate::sample::Random;
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
-use granular_dem::law::Meeting;
+use granular_dem::law::Kinematics;
 use granular_dem::material::damping_for_restitution;
 use granular_dem::{
     ContactLaw, ContactModel, Dem, Elasticity, Grain, HertzImpact, HertzMindlin, Material, Materials,
@@ -146,7 +146,7 @@ fn driven<D: Dim>(properties: &PairProperties, stride: f64, seed: u64) -> [f64; 
     let (overlap, dt) = (1e-6, 1e-7);
     let normal = D::Vec::along(0, 1.0);
     let zero = <D::Spin as Linear>::ZERO;
-    let mut meeting = Meeting::<D> {
+    let mut kinematics = Kinematics::<D> {
         normal,
         overlap,
         presence: 1.0,
@@ -166,7 +166,7 @@ fn driven<D: Dim>(properties: &PairProperties, stride: f64, seed: u64) -> [f64; 
     };
     let (mut memory, mut tally) =
         (<HertzMindlin as ContactLaw<D>>::Memory::default(), Tally::<true>::default());
-    let before = ContactLaw::<D>::at_rest(&law, &meeting, memory).1;
+    let before = ContactLaw::<D>::at_rest(&law, &kinematics, memory).1;
     let mut path = Vec::new();
     for _ in 0..12 {
         let across = D::cross(normal, random.vector::<D>(stride * overlap / dt));
@@ -175,18 +175,18 @@ fn driven<D: Dim>(properties: &PairProperties, stride: f64, seed: u64) -> [f64; 
     }
     let back: Vec<_> = path.iter().rev().map(|&(across, along)| (-across, -along)).collect();
     let mut work = 0.0;
-    let mut last = meeting.slip;
+    let mut last = kinematics.slip;
     for (across, along) in path.into_iter().chain(back) {
-        meeting.overlap += 0.5 * along * dt;
-        meeting.approach = along;
-        (meeting.start_slip, meeting.slip) = ((last + across) * 0.5, across);
+        kinematics.overlap += 0.5 * along * dt;
+        kinematics.approach = along;
+        (kinematics.start_slip, kinematics.slip) = ((last + across) * 0.5, across);
         last = across;
-        let load = law.load(&meeting, &mut memory, &mut tally);
+        let load = law.load(&kinematics, &mut memory, &mut tally);
         work += (load.normal * along - load.tangential.dot(across)) * dt;
-        meeting.overlap += 0.5 * along * dt;
+        kinematics.overlap += 0.5 * along * dt;
     }
-    (meeting.slip, meeting.approach) = (zero, 0.0);
-    let stored = ContactLaw::<D>::at_rest(&law, &meeting, memory).1 - before;
+    (kinematics.slip, kinematics.approach) = (zero, 0.0);
+    let stored = ContactLaw::<D>::at_rest(&law, &kinematics, memory).1 - before;
     [work, stored, crate::energy::lost(&tally)]
 }
 

@@ -3,7 +3,6 @@
 // Outside `#[test]` functions clippy does not see that this is a test.
 #![allow(clippy::unwrap_used)]
 
-mod cell;
 mod coarse;
 mod coarse_cell;
 mod conservation;
@@ -14,18 +13,21 @@ mod frames;
 mod hertz;
 mod impact;
 mod incline;
+mod inlets;
 mod lists;
+mod loads;
 mod memory;
 mod moving_walls;
 mod oblique;
 mod pairs;
+mod periodic;
 mod push;
 mod restart;
 mod sample;
 mod shaking;
 mod stability;
 mod surfaces;
-mod traffic;
+
 mod twisting;
 mod wall_numbers;
 mod wide;

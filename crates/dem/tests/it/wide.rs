@@ -2,7 +2,7 @@
 
 use crate::sample::{Random, down};
 use granular_core::{D2, D3, Dim, Linear, Section, Solver, Vector, contract_tests};
-use granular_dem::{Cell, Dem, Dem2, Dem3, Grain, Material, Materials, Options, Setup, Wall};
+use granular_dem::{Dem, Dem2, Dem3, Grain, Material, Materials, Options, PeriodicCell, Setup, Wall};
 
 /// Largest radius \[m\].
 const LARGEST: f64 = 10e-3;
@@ -68,7 +68,7 @@ fn sample<D: Dim>(ratio: f64, edge: f64, around: Around, skin: f64, others: &[(D
     let mut dem = Dem::new(Setup { materials, grains, walls, gravity: down::<D>(9.81), options }).unwrap();
     if around == Around::Cell {
         let size = (0..D::N).fold(D::Vec::ZERO, |size, axis| size + D::Vec::along(axis, edge));
-        dem.set_cell(Cell::new(D::Vec::ZERO, size, &[true; 3][..D::N]).unwrap()).unwrap();
+        dem.set_cell(PeriodicCell::new(D::Vec::ZERO, size, &[true; 3][..D::N]).unwrap()).unwrap();
     }
     dem
 }

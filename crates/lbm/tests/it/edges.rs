@@ -141,7 +141,7 @@ struct Lens {
     level: f64,
 }
 
-impl Shape<D2> for Lens {
+impl SolidShape<D2> for Lens {
     fn contains(&self, point: DVec2) -> bool {
         self.disk.contains(DVec2::new(point.x, (point.y - self.level).abs()))
     }

@@ -10,7 +10,7 @@ const SCHEMES: [WallScheme; 3] = [WallScheme::HalfWay, WallScheme::Bouzidi, Wall
 /// All that lies outside of a circle.
 struct Around(Ball<D2>);
 
-impl Shape<D2> for Around {
+impl SolidShape<D2> for Around {
     fn contains(&self, point: DVec2) -> bool {
         (point - self.0.centre).length() >= self.0.radius
     }

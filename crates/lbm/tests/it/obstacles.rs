@@ -12,7 +12,7 @@ struct Counting {
     crossings: Arc<AtomicUsize>,
 }
 
-impl Shape<D2> for Counting {
+impl SolidShape<D2> for Counting {
     fn contains(&self, point: DVec2) -> bool {
         self.disk.contains(point)
     }
@@ -99,7 +99,7 @@ fn a_body_that_moves_leaves_the_links_of_those_far_away() {
 fn refused<L: Lattice<Q>, const Q: usize>(
     what: &str,
     change: impl FnOnce(&mut Setup<L::Dim>),
-    shape: impl Shape<L::Dim> + 'static,
+    shape: impl SolidShape<L::Dim> + 'static,
 ) {
     let cells = if L::Dim::N == 3 { [10, 10, 10] } else { [10, 10, 1] };
     let mut setup = Setup::<L::Dim>::new(cells, 1.0, 0.1, 0.8);

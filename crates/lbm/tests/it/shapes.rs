@@ -29,7 +29,7 @@ fn ball() -> Ball<D2> {
 
 /// Relative error of the area, and the largest distance \[pixels\] between the contours along lattice links that
 /// cross both.
-fn departure(disk: &impl Shape<D2>) -> [f64; 2] {
+fn departure(disk: &impl SolidShape<D2>) -> [f64; 2] {
     let ball = ball();
     let fine = 0.05 * PIXEL;
     let count = (0..800 * 800)
@@ -42,7 +42,7 @@ fn departure(disk: &impl Shape<D2>) -> [f64; 2] {
             let inside = outside + way;
             // Links that come in steeply: a crossing moves by the distance over the cosine.
             let cosine = (ball.centre - inside).normalize().dot(way.normalize());
-            let is_cut = |shape: &dyn Shape<D2>| !shape.contains(outside) && shape.contains(inside);
+            let is_cut = |shape: &dyn SolidShape<D2>| !shape.contains(outside) && shape.contains(inside);
             if is_cut(disk) && is_cut(&ball) && cosine > 0.7 {
                 let apart = disk.crossing(outside, inside) - ball.crossing(outside, inside);
                 largest = largest.max(apart.abs() * way.length() * cosine / PIXEL);

@@ -205,7 +205,7 @@ fn a_pipe_through_periodic_faces_carries_what_poiseuille_says() {
 fn holes_are_shapes_from_within() {
     let block = Hole(Block::<D2> { low: DVec2::ZERO, high: DVec2::splat(2.0) });
     assert!(!block.contains(DVec2::ONE) && block.contains(DVec2::new(2.5, 1.0)));
-    assert_eq!(Shape::<D2>::centre(&block), DVec2::ONE);
+    assert_eq!(SolidShape::<D2>::centre(&block), DVec2::ONE);
     let q = block.crossing(DVec2::ONE, DVec2::new(3.0, 2.0));
     assert!((q - 0.5).abs() < 1e-12, "{q}");
     let twice = Hole(Hole(Ball::<D2> { centre: DVec2::ZERO, radius: 1.0 }));

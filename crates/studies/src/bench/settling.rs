@@ -6,9 +6,9 @@
 use super::state::{Ball, DIAMETERS, GRAVITY};
 use granular_core::D3;
 use granular_core::glam::DVec3;
+use granular_core::random::Chance;
 use granular_core::search::CellGrid;
 use granular_dem::{ContactModel, Dem3, Elasticity, Material, Materials, Options, Setup, Wall};
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 use std::f64::consts::PI;
 

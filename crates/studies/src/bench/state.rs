@@ -4,9 +4,9 @@
 //! grains at rest, `x y r` and `x y z r`, in SI units.
 
 use granular_core::glam::DVec2;
+use granular_core::random::Chance;
 use granular_core::{D2, Dim, FieldRef, Linear, Solver, Spin, Vector};
 use granular_dem::{Dem2, Grain, Material, MaterialId, Materials, Options, Setup, Wall};
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 use granular_packing::{Sides, ballistic};
 use std::f64::consts::PI;

@@ -3,7 +3,7 @@
 use super::speed::Speed;
 use super::triad;
 use granular_core::glam::DVec2;
-use granular_driver::chance::Chance;
+use granular_core::random::Chance;
 use granular_driver::failure::Failure;
 use granular_driver::parallel::pool;
 use granular_driver::statistics::{median, order};

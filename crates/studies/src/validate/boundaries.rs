@@ -2,11 +2,11 @@
 
 use super::Effort;
 use super::row::{Measure, Rows, Tier};
+use granular_core::random::Chance;
 use granular_core::{D2, D3, Dim, Linear, Solver, StepError, Vector};
 use granular_dem::{
     Dem, Grain, Material, MaterialId, Materials, Options, Partner, Servo, Setup, Shape, Wall, WallMotion,
 };
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 use std::f64::consts::TAU;
 

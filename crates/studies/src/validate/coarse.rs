@@ -3,9 +3,9 @@
 use super::Effort;
 use super::row::{Measure, Rows, Tier};
 use granular_core::glam::DVec2;
+use granular_core::random::Chance;
 use granular_core::{D2, D3, Dim, Linear, Solver, SymmetricTensor, Vector};
 use granular_dem::{CoarseFields, CoarseGrid, Dem, Grain, Material, Materials, Options, Setup, Wall};
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 
 const RADIUS: f64 = 1e-3;

@@ -4,9 +4,9 @@ use super::Effort;
 use super::collapse::Collapse;
 use super::laws;
 use super::row::{Measure, Rows, Tier};
+use granular_core::random::Chance;
 use granular_core::{D2, D3, Dim, Linear, Solver, Spin, StepError, Vector};
 use granular_dem::{Dem, Grain, Material, Materials, Options, Setup};
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 
 /// Drift that round-off may cause, over the sum of magnitudes.

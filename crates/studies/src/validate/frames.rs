@@ -3,9 +3,9 @@
 use super::Effort;
 use super::lattices::{Touching, name, refused};
 use super::row::{Measure, Rows, Tier};
+use granular_core::random::Chance;
 use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
 use granular_dem::{CellControl, ContactModel, Control, Dem, Matrix};
-use granular_driver::chance::Chance;
 use granular_driver::failure::Failure;
 use granular_packing::scattered;
 

@@ -11,7 +11,8 @@ pub(super) use waves::run as waves;
 use granular_core::glam::{DVec2, DVec3};
 use granular_core::{D2, D3, Dim, Linear, Spin};
 use granular_dem::{
-    Cell, ContactModel, Dem, Elasticity, Grain, Material, Materials, Matrix, Options, Setup, SetupError,
+    ContactModel, Dem, Elasticity, Grain, Material, Materials, Matrix, Options, PeriodicCell, Setup,
+    SetupError,
 };
 use granular_driver::failure::Failure;
 
@@ -125,7 +126,8 @@ impl Touching {
         let gravity = D::Vec::ZERO;
         let setup = Setup { materials, grains: moving.map(grain).collect(), walls: vec![], gravity, options };
         let mut dem = Dem::new(setup).map_err(refused)?;
-        dem.set_cell(Cell::with_edges(D::Vec::ZERO, edges, periodic).map_err(refused)?).map_err(refused)?;
+        dem.set_cell(PeriodicCell::with_edges(D::Vec::ZERO, edges, periodic).map_err(refused)?)
+            .map_err(refused)?;
         Ok(dem)
     }
 

@@ -1,9 +1,9 @@
 //! The energy balance with every contact law: grains that fall into a box and come to rest.
 
 use super::row::{Measure, Rows, Tier};
+use granular_core::random::Chance;
 use granular_core::{D2, D3, Dim, Linear, Solver, StepError, Vector};
 use granular_dem::{ContactModel, Dem, Elasticity, Grain, Material, Materials, Options, Setup, Wall};
-use granular_driver::chance::Chance;
 
 /// Largest and smallest radius \[m\].
 const RADII: (f64, f64) = (0.4e-3, 0.6e-3);

@@ -4,7 +4,7 @@ use super::Effort;
 use super::reference::named;
 use super::row::{Measure, Rows, Tier};
 use granular_core::glam::DVec2;
-use granular_driver::chance::Chance;
+use granular_core::random::Chance;
 use granular_driver::failure::Failure;
 use granular_tessellate::{Diagram, Domain, TessellationError, encloses, local_densities, periodic_areas};
 use granular_validation_data::TESSELLATION;

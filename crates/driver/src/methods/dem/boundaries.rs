@@ -205,7 +205,7 @@ pub(super) fn held_grains<D: Dim>(
         problems.add(path, format!("{count:.0} held grains"), allowed, "a larger spacing makes fewer");
         return None;
     }
-    let mut chance = crate::chance::Chance::new(seed);
+    let mut chance = granular_core::random::Chance::new(seed);
     let mut held = Vec::new();
     for index in 0..count as usize {
         let (mut rest, mut at) = (index, low);

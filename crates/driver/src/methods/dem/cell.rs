@@ -6,7 +6,7 @@ use crate::model::{Problems, nearest};
 use crate::scene::cell::{CellChange, CellSpec};
 use crate::scene::{Change, GradingSpec, Sample, Scene};
 use granular_core::{Dim, Linear, Vector};
-use granular_dem::{Cell, CellControl, Control, Grain};
+use granular_dem::{CellControl, Control, Grain, PeriodicCell};
 use granular_packing::scattered;
 
 /// The cell of a scene, if it has one, at rest.
@@ -14,7 +14,7 @@ pub(super) fn cell<D: Dim>(
     scene: &Scene,
     sample: Option<&BuiltSample<D>>,
     problems: &mut Problems,
-) -> Option<Cell<D>> {
+) -> Option<PeriodicCell<D>> {
     let Some(spec) = &scene.cell else {
         refuse_changes(scene, problems);
         return None;
@@ -44,7 +44,7 @@ pub(super) fn cell<D: Dim>(
         }
         (false, _) => problems.vector::<D, _>("cell.size", &spec.size),
     }?;
-    match Cell::new(low?, size, &spec.periodic) {
+    match PeriodicCell::new(low?, size, &spec.periodic) {
         Ok(cell) => Some(cell),
         Err(error) => {
             problems.add("cell.size", error.value, error.allowed, "");

@@ -4,7 +4,7 @@ use super::super::Effort;
 use super::super::row::{Measure, Rows, Tier};
 use super::{Touching, name, refused};
 use granular_core::{D2, D3, Dim, Solver};
-use granular_dem::{Cell, CellControl, ContactModel, Control, Dem, Matrix};
+use granular_dem::{CellControl, ContactModel, Control, Dem, Matrix, PeriodicCell};
 use granular_driver::failure::Failure;
 
 /// Strain at which strength is looked at: contacts slide by then, and the lattice, which is not stable, still holds.
@@ -21,7 +21,7 @@ fn crush<D: Dim>(mut dem: Dem<D>) -> Result<(f64, Matrix<D>), Failure> {
     dem.control_cell(control).map_err(refused)?;
     dem.advance(dt, STEPS)?;
     let stress = dem.cell_stress().unwrap_or_default();
-    let edges = *dem.cell().map(Cell::edges).unwrap_or(&Matrix::zero());
+    let edges = *dem.cell().map(PeriodicCell::edges).unwrap_or(&Matrix::zero());
     Ok((stress.at(D::UP, D::UP) / stress.at(0, 0), edges))
 }
 

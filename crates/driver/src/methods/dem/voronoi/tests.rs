@@ -3,7 +3,7 @@ use crate::check;
 use crate::observers;
 use crate::scene_file::SceneText;
 use granular_core::{Linear, Numbers, Vector};
-use granular_dem::{Cell, CoarseGrid, Grain, Material, Materials, Options, Setup, Wall};
+use granular_dem::{CoarseGrid, Grain, Material, Materials, Options, PeriodicCell, Setup, Wall};
 use granular_io::Frame;
 use granular_io::frame::Values;
 use std::f64::consts::PI;
@@ -108,10 +108,10 @@ fn a_periodic_packing_has_no_border() {
     let setup = Setup { materials, grains, walls: Vec::new(), gravity, options: Options::default() };
     dem = Dem::new(setup).unwrap();
     let size = DVec2::splat(6.0 * pitch);
-    dem.set_cell(Cell::new(DVec2::ZERO, size, &[true, true]).unwrap()).unwrap();
+    dem.set_cell(PeriodicCell::new(DVec2::ZERO, size, &[true, true]).unwrap()).unwrap();
     let [density, count] = numbers(&dem, &["bulk_density", "bulk_grains"])[..] else { panic!() };
     assert!((density - PI / 4.0).abs() < 1e-12 && count == 36.0);
-    dem.set_cell(Cell::new(DVec2::ZERO, size, &[true, false]).unwrap()).unwrap();
+    dem.set_cell(PeriodicCell::new(DVec2::ZERO, size, &[true, false]).unwrap()).unwrap();
     assert!(shown(&dem).is_empty());
 }
 

@@ -5,7 +5,7 @@ use crate::scene::fluid::{ObstacleSpec, PathSpec, ShapeSpec, SurfaceSpec};
 use granular_core::units::AngularVelocity;
 use granular_core::{D2, Dim, Linear, Spin, Vector};
 use granular_coupling::{Body, Path};
-use granular_lbm::{Ball, Block, Hole, Obstacle, Polygon, Reference, Shape, WallScheme};
+use granular_lbm::{Ball, Block, Hole, Obstacle, Polygon, Reference, SolidShape, WallScheme};
 use std::sync::Arc;
 
 impl Reader<'_> {
@@ -56,7 +56,7 @@ impl Reader<'_> {
         Some((obstacle, body))
     }
 
-    fn shape<D: Dim>(&mut self, path: &str, spec: &ShapeSpec) -> Option<Arc<dyn Shape<D>>> {
+    fn shape<D: Dim>(&mut self, path: &str, spec: &ShapeSpec) -> Option<Arc<dyn SolidShape<D>>> {
         match spec {
             ShapeSpec::Ball { centre, radius } => {
                 let centre = self.problems.vector::<D, _>(&format!("{path}.centre"), centre);

@@ -1,0 +1,129 @@
+//! How two bodies move at their contact, from how they move as a whole.
+
+use crate::law::{ContactLaw, Kinematics, Load};
+use crate::view::{Body, View};
+use granular_core::{Dim, Linear};
+
+/// Share of the step during which surfaces overlap, and the overlap averaged over the step,
+/// when the motion through the step is uniform; zero when they do not meet. This is what makes entry
+/// and exit of second order: a force that jumps at contact counts for exactly the time it acts.
+#[inline(always)]
+pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> (f64, f64) {
+    let half = 0.5 * approach.abs() * dt;
+    let reach = overlap + half;
+    let part = reach / (2.0 * half);
+    if overlap >= half {
+        (1.0, overlap)
+    } else if reach <= 0.0 {
+        (0.0, 0.0)
+    } else {
+        (part, 0.5 * part * reach)
+    }
+}
+
+/// Force vector of a load.
+#[inline(always)]
+pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) -> D::Vec {
+    let along = normal * load.normal;
+    if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
+}
+
+/// The kinematics of a body with another, each with its lever arm, if they meet within the step.
+///
+/// `turning` is the rate of the normal at the start of the step \[1/s\].
+#[inline(always)]
+pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    (own, own_arm): (&Body<D>, f64),
+    (other, other_arm): (&Body<D>, f64),
+    (normal, turning): (D::Vec, impl FnOnce() -> D::Vec),
+    overlap: f64,
+) -> Kinematics<D> {
+    let relative = own.velocity - other.velocity;
+    let approach = -relative.dot(normal);
+    let start_relative = own.start_velocity - other.start_velocity;
+    let (presence, overlap) = share_of_step(overlap, approach, view.dt);
+    let mut kinematics = Kinematics {
+        normal,
+        overlap,
+        presence,
+        approach,
+        start_approach: -start_relative.dot(normal),
+        slip: D::Spin::ZERO,
+        roll: D::Spin::ZERO,
+        start_slip: D::Spin::ZERO,
+        start_roll: D::Spin::ZERO,
+        twist: 0.0,
+        twisting: 0.0,
+        start_twisting: 0.0,
+        effective_mass: 0.0,
+        effective_radius: 0.0,
+        dt: view.dt,
+        last_dt: view.last_dt,
+    };
+    if L::TANGENTIAL {
+        if view.predicts {
+            let surface = D::tangential(own.spin * own_arm + other.spin * other_arm, normal);
+            kinematics.slip = D::cross(normal, relative) - surface;
+            kinematics.roll = D::tangential(own.spin - other.spin, normal);
+        }
+        // The velocities are those half a step before the normal. Bodies that turn as one with a
+        // component along it would slide on each other by this difference.
+        let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
+        let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
+        // Within the tangent plane of now, or the moments on the two bodies would not balance.
+        kinematics.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
+        kinematics.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
+        kinematics.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
+        if L::TWISTING {
+            kinematics.twisting = D::twist(own.spin - other.spin, normal);
+            kinematics.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
+        }
+    }
+    kinematics
+}
+
+/// Two grains at a distance: `arm` leads from the second to the first.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Pair<D: Dim> {
+    pub(crate) own: Body<D>,
+    pub(crate) other: Body<D>,
+    pub(crate) arm: D::Vec,
+    pub(crate) distance_squared: f64,
+}
+
+impl<D: Dim> Pair<D> {
+    #[inline(always)]
+    pub(crate) fn overlap(&self) -> f64 {
+        self.own.radius + self.other.radius - self.distance_squared.sqrt()
+    }
+
+    /// The kinematics and both lever arms.
+    #[inline(always)]
+    pub(crate) fn meet<L: ContactLaw<D>>(&self, view: &View<'_, D>) -> (Kinematics<D>, (f64, f64)) {
+        let Self { own, other, .. } = self;
+        let distance = self.distance_squared.sqrt();
+        let overlap = own.radius + other.radius - distance;
+        let shorter = view.arm_share * overlap;
+        let arms = (own.radius - shorter, other.radius - shorter);
+        let normal = self.arm * (1.0 / distance);
+        let turning = || (own.start_velocity - other.start_velocity) * (1.0 / distance);
+        let mut kinematics =
+            kinematics_of::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap);
+        kinematics.effective_mass = own.mass * other.mass / (own.mass + other.mass);
+        kinematics.effective_radius = own.radius * other.radius / (own.radius + other.radius);
+        (kinematics, arms)
+    }
+}
+
+/// The kinematics of two grains that overlap now.
+pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
+    view: &View<'_, D>,
+    first: usize,
+    second: usize,
+) -> Option<Kinematics<D>> {
+    let arm = view.position[first] - view.position[second];
+    let (own, other) = (view.body::<L>(first), view.body::<L>(second));
+    let pair = Pair { own, other, arm, distance_squared: arm.length_squared() };
+    (pair.overlap() > 0.0 && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
+}
