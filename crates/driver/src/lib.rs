@@ -3,6 +3,7 @@
 //! A [`scene::Scene`] is read from RON by [`scene_file`], checked and built into a
 //! [`model::Model`], and run stage by stage.
 
+#[cfg(feature = "dem")]
 pub mod calibrate;
 pub mod check;
 pub mod compare;

@@ -5,14 +5,22 @@
 //! that comes of it for all that outputs, figures and reports show. `docs/adding-a-solver.md` leads through it.
 
 pub(crate) mod couplings;
+#[cfg(feature = "dem")]
 pub(crate) mod dem;
 #[cfg(test)]
 mod heat;
+#[cfg(feature = "lbm")]
 pub(crate) mod lbm;
 mod member;
+mod off;
 mod parts;
 
+#[cfg(feature = "dem")]
+pub(crate) use dem::{GrainSpec, MaterialSpec, PairSpec};
 pub use member::{Averages, Member, NoGrid, Notes, Number};
+pub(crate) use off::explain;
+#[cfg(not(feature = "dem"))]
+pub(crate) use off::{GrainSpec, MaterialSpec, PairSpec};
 pub use parts::Part;
 pub(crate) use parts::{given, refuse_unused};
 
@@ -134,10 +142,19 @@ macro_rules! methods {
 
 methods! {
     /// Discrete element method, for grains.
+    #[cfg(feature = "dem")]
     Dem(dem::DemSpec),
     /// Lattice Boltzmann method, for a fluid.
+    #[cfg(feature = "lbm")]
     Lbm(lbm::LbmSpec),
     /// Heat on a grid: a toy that shows what a method takes.
     #[cfg(test)]
     Heat(heat::HeatSpec),
+}
+
+/// Methods that this program was built without, and the cargo feature of each.
+pub fn left_out() -> Vec<(&'static str, &'static str)> {
+    let known = all();
+    let is_off = |(name, _): &(&str, &str)| !known.iter().any(|(other, _)| other == name);
+    [("Dem", "dem"), ("Lbm", "lbm")].into_iter().filter(is_off).collect()
 }

@@ -3,7 +3,7 @@
 mod outputs;
 
 use crate::failure::Failure;
-use crate::methods::{self, Building, Member, Notes, couplings};
+use crate::methods::{self, Building, Member, Notes, Part, couplings};
 use crate::parts;
 use crate::scene::{Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
@@ -214,7 +214,8 @@ pub(crate) fn early_limits(scene: &Scene) -> Option<Limits> {
 /// # Errors
 /// When the file cannot be written.
 pub(crate) fn save_sample(scene: &Scene, model: &Model, path: &Path) -> Result<(), Failure> {
-    model.member(None).save_sample(scene, &model.simulation, path)
+    let saves = model.members.iter().find(|member| member.offers(Part::Saving));
+    saves.unwrap_or(&model.members[0]).save_sample(scene, &model.simulation, path)
 }
 
 /// Checks that need neither dimension nor solver.
@@ -258,6 +259,12 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
                 "a name of its own",
                 "",
             );
+        }
+        if let Some(of) = stage.of.as_ref().filter(|of| !scene.solvers.contains_key(*of)) {
+            let known: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
+            let hint = nearest(of, known.iter().copied());
+            let value = format!("`{of}`, which is no solver of this scene");
+            problems.add(format!("stages.{k}.of"), value, known.join(", "), hint);
         }
         if let Some(step) = stage.time_step.filter(|step| step.value() <= 0.0) {
             problems.add(format!("stages.{k}.time_step"), step, "a positive time", "");

@@ -10,9 +10,9 @@ mod tracks;
 pub(crate) use profile::Line;
 
 use crate::failure::Failure;
-use crate::methods::Member;
+use crate::methods::{Member, Part};
 use crate::model::Model;
-use crate::scene::{End, EverySpec, Output, Writer};
+use crate::scene::{End, EverySpec, Output, Stage, Writer};
 use granular_core::{
     Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, ShownAs, Simulation, SnapshotError,
 };
@@ -187,19 +187,23 @@ impl Observer for FilesObserver {
 }
 
 /// The observer that ends a stage, unless its time alone does; it raises the flag.
-pub fn of_end(end: &End, model: &Model, reached: &Arc<AtomicBool>) -> Option<Scheduled> {
+pub fn of_end(stage: &Stage, model: &Model, reached: &Arc<AtomicBool>) -> Option<Scheduled> {
     let reached = reached.clone();
-    Some(match *end {
+    let sample = model.members.iter().find(|member| member.offers(Part::Quiet));
+    let member = match &stage.of {
+        None if !matches!(stage.end, End::Steady { .. }) => sample.unwrap_or(&model.members[0]),
+        of => model.member(of.as_deref()),
+    };
+    let member = member.clone();
+    Some(match stage.end {
         End::For(_) => return None,
         End::Quiet { kinetic_over_potential, within } => {
-            Rest::scheduled(model.member(None).clone(), kinetic_over_potential, within.value(), reached)
+            Rest::scheduled(member, kinetic_over_potential, within.value(), reached)
         }
         End::Packed { solid_fraction, within } => {
-            Packed::scheduled(model.member(None).clone(), solid_fraction, within.value(), reached)
+            Packed::scheduled(member, solid_fraction, within.value(), reached)
         }
-        End::Steady { change, within } => {
-            Steady::scheduled(model.member(None).clone(), change, within.value(), reached)
-        }
+        End::Steady { change, within } => Steady::scheduled(member, change, within.value(), reached),
     })
 }
 

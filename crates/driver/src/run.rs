@@ -352,7 +352,7 @@ impl<'a> Session<'a> {
     ) -> Result<Vec<Scheduled>, Failure> {
         let mut extra = vec![self.snapshot_timer()];
         let watcher =
-            quiet_flag.and_then(|flag| observers::of_end(&self.scene.stages[index].end, &self.model, flag));
+            quiet_flag.and_then(|flag| observers::of_end(&self.scene.stages[index], &self.model, flag));
         if let Some(mut watcher) = watcher {
             if let Some(saved) = self.watcher.take() {
                 watcher.restore(&saved)?;

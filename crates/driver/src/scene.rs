@@ -11,11 +11,12 @@ pub mod names;
 pub mod outputs;
 pub mod push;
 pub mod region;
+mod walls;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 pub use crate::methods::SolverSpec;
-use crate::methods::dem::{GrainSpec, MaterialSpec, PairSpec};
+use crate::methods::{GrainSpec, MaterialSpec, PairSpec};
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use coupling::CouplingSpec;
@@ -437,6 +438,9 @@ pub struct Stage {
     pub name: String,
     /// When it ends.
     pub end: End,
+    /// Name of the solver whose rest, density or flow ends it; of several the first that can, in the order of their names.
+    #[serde(default)]
+    pub of: Option<String>,
     /// What changes at its start, in this order.
     #[serde(default)]
     pub changes: Vec<Change>,

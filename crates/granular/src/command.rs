@@ -1,11 +1,14 @@
 //! Verbs and flags.
 
+#[cfg(feature = "studies")]
 mod bench;
+#[cfg(feature = "dem")]
 mod calibrate;
 mod compare;
 mod plot;
 mod summary;
 mod sweep;
+#[cfg(feature = "studies")]
 mod validate;
 
 use clap::{Args, Parser, Subcommand};
@@ -97,11 +100,14 @@ enum Verb {
     /// Lay runs side by side: series, profiles and grids of run folders, and tables from elsewhere, in one figure and one table.
     Compare(compare::Compare),
     /// Compare the program with known answers; exit code 1 when a required one is missed.
+    #[cfg(feature = "studies")]
     Validate(validate::Validate),
     /// Find what a continuum of the grains of a scene is like.
+    #[cfg(feature = "dem")]
     #[command(subcommand)]
     Calibrate(calibrate::Calibrate),
     /// Measure error against run time, or speed.
+    #[cfg(feature = "studies")]
     #[command(subcommand)]
     Bench(bench::Bench),
     /// Tell about this program, a run folder, or all that a scene can show.
@@ -182,8 +188,11 @@ impl Verb {
             Self::Plot(verb) => verb.execute(common),
             Self::Compare(verb) => verb.execute(common),
             Self::Sweep(verb) => verb.execute(common),
+            #[cfg(feature = "studies")]
             Self::Bench(verb) => verb.execute(common),
+            #[cfg(feature = "dem")]
             Self::Calibrate(calibrate) => calibrate.execute(common),
+            #[cfg(feature = "studies")]
             Self::Validate(verb) => verb.execute(common),
             Self::Info { path } => info(common, path.as_deref()),
         }

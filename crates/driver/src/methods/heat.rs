@@ -68,6 +68,10 @@ impl Member for Plate {
         simulation.get::<Heat>(self.key)
     }
 
+    fn offers(&self, part: Part) -> bool {
+        HeatSpec::PARTS.contains(&part)
+    }
+
     fn begin(&self, _: &mut Simulation, _: usize) -> Notes {
         Notes::default()
     }

@@ -1,5 +1,6 @@
 //! What a method hands the driver: a solver of the simulation, and all that is asked of it.
 
+use super::Part;
 use crate::failure::Failure;
 use crate::model::{ColumnSize, PushRecord};
 use crate::scene::{GridSpec, Scene};
@@ -14,6 +15,9 @@ pub trait Member: Send + Sync {
 
     /// The solver.
     fn solver<'a>(&self, simulation: &'a Simulation) -> &'a dyn Solver;
+
+    /// Whether its method uses this part of a scene.
+    fn offers(&self, part: Part) -> bool;
 
     /// Makes the changes at the start of a stage.
     fn begin(&self, simulation: &mut Simulation, stage: usize) -> Notes;

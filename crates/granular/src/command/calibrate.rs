@@ -1,10 +1,10 @@
 //! `granular calibrate`.
 
 use super::{Common, Edits, read, show};
+use granular_driver::Effort;
 use granular_driver::calibrate::{self, Plan};
 use granular_driver::failure::Failure;
 use granular_driver::scene::Scene;
-use granular_studies::validate::Effort;
 use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;

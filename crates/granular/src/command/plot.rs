@@ -2,8 +2,10 @@
 
 use super::{Common, show};
 use clap::Args;
+#[cfg(feature = "dem")]
+use granular_driver::calibrate;
 use granular_driver::failure::Failure;
-use granular_driver::{calibrate, run, sweep};
+use granular_driver::{run, sweep};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -42,6 +44,7 @@ impl Plot {
         let mut failed = Vec::new();
         let paths = match runs.first() {
             None => vec![sweep::plot(&folders, &view)?],
+            #[cfg(feature = "dem")]
             Some(file) if folders.len() == 1 && view == sweep::View::default() && file.is_file() => {
                 vec![calibrate::plot(file)?]
             }

@@ -73,8 +73,8 @@ pub(super) fn stage(
 ) -> Result<bool, Failure> {
     let end = scene.stages[index].end;
     let reached = Arc::new(AtomicBool::new(false));
-    let waiting = Some(end).filter(|end| !matches!(end, End::Steady { .. }));
-    let of_end = waiting.and_then(|end| observers::of_end(&end, model, &reached));
+    let waits = !matches!(end, End::Steady { .. });
+    let of_end = waits.then(|| observers::of_end(&scene.stages[index], model, &reached)).flatten();
     let mut observers: Vec<Scheduled> = of_end.into_iter().collect();
     let waits = !observers.is_empty();
     observers.extend(more);

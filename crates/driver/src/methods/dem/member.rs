@@ -4,9 +4,9 @@ use super::falling::{self, Region};
 use super::grid::Grid;
 use super::sample_file::SavedSample;
 use super::stages::{self, Action};
-use super::{boundaries, probes, push, voronoi};
+use super::{DemSpec, boundaries, probes, push, voronoi};
 use crate::failure::Failure;
-use crate::methods::{Averages, Building, Member, NoGrid, Notes};
+use crate::methods::{Averages, Building, Claims, Member, NoGrid, Notes, Part};
 use crate::model::{ColumnSize, Problems};
 use crate::observers::number_of;
 use crate::scene::{GridSpec, Scene};
@@ -64,6 +64,10 @@ impl<D: Dim> Member for Grains<D> {
 
     fn solver<'a>(&self, simulation: &'a Simulation) -> &'a dyn Solver {
         self.dem(simulation)
+    }
+
+    fn offers(&self, part: Part) -> bool {
+        DemSpec::PARTS.contains(&part)
     }
 
     fn begin(&self, simulation: &mut Simulation, stage: usize) -> Notes {

@@ -74,7 +74,7 @@ fn cell_scene(scene: &Scene, plan: &Plan, seed: u64, solid_fraction: f64) -> Res
     materials.values_mut().for_each(|spec| spec.friction = 0.0);
     let periodic = vec![true; if scene.dimension == crate::scene::Dimension::Plane { 2 } else { 3 }];
     let (name, end) = ("run".to_owned(), End::For(1.0.into()));
-    let run = Stage { name, end, changes: Vec::new(), time_step: None, save: None };
+    let run = Stage { name, end, of: None, changes: Vec::new(), time_step: None, save: None };
     Ok(Scene {
         gravity: Vec::new(),
         materials,

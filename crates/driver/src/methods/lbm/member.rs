@@ -1,6 +1,7 @@
 //! A fluid as a member of a simulation.
 
-use crate::methods::{Member, Notes};
+use super::LbmSpec;
+use crate::methods::{Claims, Member, Notes, Part};
 use crate::observers::number_of;
 use granular_core::{Dim, NodeKey, Simulation, Solver, Spin, Vector};
 use granular_lbm::{Lattice, Lbm, Real};
@@ -41,6 +42,10 @@ impl<L: Lattice<Q>, T: Real, const Q: usize> Member for Water<L, T, Q> {
 
     fn solver<'a>(&self, simulation: &'a Simulation) -> &'a dyn Solver {
         simulation.get::<Lbm<L, Q, T>>(self.key)
+    }
+
+    fn offers(&self, part: Part) -> bool {
+        LbmSpec::PARTS.contains(&part)
     }
 
     fn begin(&self, simulation: &mut Simulation, stage: usize) -> Notes {
