@@ -4,7 +4,9 @@ use super::work::failed_runs;
 use super::{Plan, State};
 use crate::check;
 use crate::failure::Failure;
+use crate::parts::{self, Part};
 use crate::progress::duration;
+use crate::scene_file::SceneText;
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::Path;
@@ -46,11 +48,7 @@ impl Plan {
                 trouble: None,
             };
             if state.is_to_run(retry) {
-                let checked = check::check(&point.text).and_then(|report| {
-                    let refused = !report.problems.is_empty();
-                    if refused { Err(report.refusal()) } else { Ok(report.estimated_seconds) }
-                });
-                match checked {
+                match seconds_of(&point.text) {
                     Ok(seconds) => expected.seconds = seconds,
                     Err(failure) => {
                         expected.would = "fail";
@@ -62,6 +60,15 @@ impl Plan {
         }
         Ok(Forecast { runs, axes: self.axes.clone() })
     }
+}
+
+/// How long a scene takes at most \[s\], all its parts together.
+fn seconds_of(text: &SceneText) -> Result<f64, Failure> {
+    let seconds = |part: Part| {
+        let report = check::check(&part.text)?;
+        if report.problems.is_empty() { Ok(report.estimated_seconds) } else { Err(report.refusal()) }
+    };
+    parts::of(text)?.into_iter().map(seconds).sum()
 }
 
 impl Forecast {

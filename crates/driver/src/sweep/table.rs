@@ -3,6 +3,7 @@
 use super::{Point, State};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
+use crate::parts::{self, Part};
 use crate::scene::{Output, Scene, Writer};
 use granular_io::{csv_row, write_atomically};
 use std::path::Path;
@@ -26,15 +27,25 @@ pub(super) fn measures(out: &Path, point: &Point) -> Result<Measures, Failure> {
     // What could not be measured is an empty field.
     let text = |value: &serde_json::Value| if value.is_null() { String::new() } else { value.to_string() };
     let mut found: Measures = metrics.map(|(name, value)| (with_unit(name), text(value))).collect();
-    let scene: Scene = point.text.parse()?;
+    for part in parts::of(&point.text)? {
+        found.extend(last_rows(&run.path().join(&part.name), &part)?);
+    }
+    Ok(found)
+}
+
+/// The last row of each table of a run, the name of the part in front if there are several.
+fn last_rows(folder: &Path, part: &Part) -> Result<Measures, Failure> {
+    let mut found = Measures::new();
+    let scene: Scene = part.text.parse()?;
     for Output { write, .. } in &scene.outputs {
         let Writer::Table { path, .. } = write else { continue };
-        let file = run.path().join(path);
+        let file = folder.join(path);
         let text = std::fs::read_to_string(&file).map_err(|error| Failure::io(file.display(), error))?;
         let mut lines = text.lines();
         // A header holds no commas but those between columns.
         let (Some(head), Some(last)) = (lines.next(), lines.next_back()) else { continue };
         let name = path.strip_suffix(".csv").unwrap_or(path);
+        let name = if part.name.is_empty() { name.to_owned() } else { format!("{}.{name}", part.name) };
         let columns = head.split(',').map(|column| format!("{name}:{column}"));
         found.extend(columns.zip(last.split(',').map(str::to_owned)));
     }

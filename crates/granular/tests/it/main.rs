@@ -16,6 +16,7 @@ mod command_interrupt;
 mod command_limits;
 mod command_push;
 mod command_sample;
+mod command_several;
 mod command_snapshots;
 mod command_stability;
 mod command_stir;
