@@ -14,7 +14,7 @@
 mod figure;
 mod fit;
 mod material;
-mod plan;
+pub(crate) mod plan;
 mod table;
 
 pub use figure::{figure, plot};

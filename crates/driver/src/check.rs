@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::figures::{self, Extents};
-use crate::methods::Member;
+use crate::methods::member::Member;
 use crate::model::{self, Model};
 use crate::progress::duration;
 use crate::scene::{Scene, Stage};

@@ -14,12 +14,12 @@ mod units;
 mod voronoi;
 mod walls;
 
+use crate::column::ColumnSize;
 use crate::failure::Failure;
 use crate::folder::RunFolder;
-use crate::methods::Member;
-use crate::model::{ColumnSize, Model};
-use crate::observers::number_of;
-use crate::run::{RecordedStage, StageRecord};
+use crate::methods::member::Member;
+use crate::model::Model;
+use crate::records::{RecordedStage, StageRecord};
 use crate::scene::{FigureSpec, Scene};
 pub use column::running_median;
 use frames::Frames;
@@ -262,7 +262,7 @@ fn of_member(
     (model, member): (&Model, &dyn Member),
     records: &[RecordedStage],
 ) -> Vec<Metric> {
-    let number = |name: &str| number_of(member, &model.simulation, name);
+    let number = |name: &str| member.number(&model.simulation, name);
     let mut metrics = Vec::new();
     let mut add = |name: &str, unit, value: Option<f64>| {
         metrics.extend(value.map(|value| Metric { name: name.to_owned(), unit, value }));

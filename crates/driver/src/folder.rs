@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::lock::Lock;
-use crate::methods;
+use crate::methods::specs;
 use crate::scene::files::{MESHES, SAMPLE};
 use granular_io::{SnapshotStore, write_atomically};
 use serde_json::{Value, json};
@@ -290,8 +290,8 @@ pub fn provenance() -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "commit": COMMIT.get().unwrap_or(&"unknown"),
-        "methods": methods::all().iter().map(|(name, _)| *name).collect::<Vec<_>>(),
-        "left_out": methods::left_out().iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+        "methods": specs::names(),
+        "left_out": specs::left_out().iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "cpu": cpu.unwrap_or_else(|| "unknown".to_owned()),
         "cores": std::thread::available_parallelism().map_or(1, usize::from),

@@ -6,6 +6,7 @@
 #[cfg(feature = "dem")]
 pub mod calibrate;
 pub mod check;
+pub mod column;
 pub mod compare;
 mod effort;
 pub mod failure;
@@ -19,7 +20,9 @@ pub mod model;
 pub mod observers;
 pub mod parallel;
 pub mod parts;
+pub mod problems;
 mod progress;
+pub mod records;
 pub mod run;
 pub mod scene;
 pub mod scene_file;

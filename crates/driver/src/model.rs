@@ -2,14 +2,17 @@
 
 mod outputs;
 
+use crate::column::ColumnSize;
 use crate::failure::Failure;
-use crate::methods::{self, Building, Member, Notes, Part, couplings};
+use crate::methods::contract::Building;
+use crate::methods::member::{Member, Notes};
+use crate::methods::parts::Part;
+use crate::methods::{self, couplings};
 use crate::parts;
+use crate::problems::{Problems, nearest};
 use crate::scene::{Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
-use granular_core::units::{Measured, Unit};
-use granular_core::{D2, D3, Dim, Limits, Simulation, Vector};
-use serde::{Deserialize, Serialize};
+use granular_core::{D2, D3, Dim, Limits, Simulation};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -42,7 +45,7 @@ impl Model {
     /// A number that the first solver shows which has it.
     pub fn number(&self, name: &str) -> Option<f64> {
         let mut members = self.members.iter();
-        members.find_map(|member| crate::observers::number_of(&**member, &self.simulation, name))
+        members.find_map(|member| member.number(&self.simulation, name))
     }
 
     /// Size of the column that the sample is \[m\], if it is one.
@@ -66,104 +69,6 @@ impl Model {
     }
 }
 
-/// Size of a column \[m\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColumnSize {
-    /// Width along x; the radius of a cylinder.
-    pub width: f64,
-    /// Height asked for; what comes to rest may differ.
-    pub height: f64,
-    /// Depth along y in space; none for a cylinder.
-    pub depth: Option<f64>,
-    /// Whether it is a cylinder about the z axis.
-    pub round: Option<Round>,
-}
-
-/// How much of a cylinder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Round {
-    /// All of it.
-    Whole,
-    /// The half with y above 0.
-    Half,
-}
-
-impl ColumnSize {
-    /// The number that says how far it spread.
-    pub fn front(&self) -> &'static str {
-        if self.round.is_some() { "radial_front" } else { "front" }
-    }
-}
-
-/// What the pushes at the start of a stage did, and the units in which impacts are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PushRecord {
-    /// Kinetic energy given \[J; J/m in the plane\].
-    #[serde(with = "crate::json::number")]
-    pub energy: f64,
-    /// Momentum given along the direction \[kg m/s; kg/s in the plane\].
-    #[serde(with = "crate::json::number")]
-    pub momentum: f64,
-    /// Velocity given to the grains that were moved fastest \[m/s\].
-    #[serde(with = "crate::json::number")]
-    pub speed: f64,
-    /// Mean diameter of the grains \[m\].
-    #[serde(with = "crate::json::number")]
-    pub diameter: f64,
-    /// Mass of all grains \[kg; kg/m in the plane\].
-    #[serde(with = "crate::json::number")]
-    pub mass: f64,
-    /// Gravity \[m/s^2\].
-    #[serde(with = "crate::json::number")]
-    pub gravity: f64,
-    /// Potential energy of the grains above the origin \[J; J/m in the plane\].
-    #[serde(with = "crate::json::number")]
-    pub potential: f64,
-}
-
-/// Collects problems by scene path.
-#[derive(Debug, Default)]
-pub struct Problems(pub(crate) Vec<SceneProblem>);
-
-impl Problems {
-    /// Adds what stands at a place of the scene, what may, and how to put it right.
-    pub fn add(
-        &mut self,
-        path: impl Into<String>,
-        value: impl std::fmt::Display,
-        allowed: impl Into<String>,
-        hint: impl Into<String>,
-    ) {
-        self.0.push(SceneProblem::at_path(path, value, allowed, hint));
-    }
-
-    /// A vector of the right number of components.
-    pub fn vector<D: Dim, U: Unit>(&mut self, path: &str, values: &[Measured<U>]) -> Option<D::Vec> {
-        let numbers: Vec<f64> = values.iter().map(|value| value.value()).collect();
-        let vector = D::Vec::from_slice(&numbers);
-        if vector.is_none() {
-            let allowed = format!("{} values, one per axis", D::N);
-            self.add(path, format!("a list of {}", values.len()), allowed, "");
-        }
-        vector
-    }
-}
-
-/// "did you mean" for the nearest of some names; empty when none is near.
-pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let near = known
-        .into_iter()
-        .map(|other| (strsim::damerau_levenshtein(name, other), other))
-        .filter(|&(distance, other)| distance <= 1 + other.len() / 3)
-        .min();
-    near.map_or(String::new(), |(_, other)| format!("did you mean `{other}`?"))
-}
-
-/// A key as a scene path writes it: one with a dot needs quotes.
-pub(crate) fn quoted(key: &str) -> String {
-    if key.contains(['.', '=', '[']) { format!("\"{key}\"") } else { key.to_owned() }
-}
-
 /// Builds the simulation of a scene.
 ///
 /// # Errors
@@ -178,7 +83,7 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         problems.add("solvers", "an empty map", allowed, "");
         return Err(problems.0);
     }
-    methods::refuse_unused(scene, &mut problems);
+    methods::unused::refuse_unused(scene, &mut problems);
     if parts::groups(scene).len() > 1 {
         let names: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
         let hint = "a run takes solvers that nothing joins apart, each into a folder of its own";

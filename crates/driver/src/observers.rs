@@ -10,14 +10,14 @@ mod tracks;
 pub(crate) use profile::Line;
 
 use crate::failure::Failure;
-use crate::methods::{Member, Part};
+use crate::methods::member::Member;
+use crate::methods::parts::Part;
 use crate::model::Model;
 use crate::scene::{End, EverySpec, Output, Stage, Writer};
 use granular_core::{
     Every, Flow, Numbers, Observer, ObserverError, Scheduled, Section, ShownAs, Simulation, SnapshotError,
 };
 use granular_io::{Collection, write_fields, write_links_vtp};
-use granular_tessellate::FREE_SURFACE;
 use series::Series;
 use source::Source;
 use std::path::{Path, PathBuf};
@@ -234,7 +234,7 @@ impl Steady {
 
 impl Observer for Steady {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let energy = number_of(&*self.member, simulation, "kinetic_energy").unwrap_or(f64::NAN);
+        let energy = self.member.number(simulation, "kinetic_energy").unwrap_or(f64::NAN);
         let before = std::mem::replace(&mut self.before, energy);
         // Not a number before the second look; a fluid at rest has no energy to change yet.
         if energy > 0.0 && (energy - before).abs() < self.change * energy {
@@ -335,8 +335,7 @@ impl Packed {
 
 impl Observer for Packed {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        if number_of(&*self.member, simulation, "solid_fraction")
-            .is_some_and(|found| found >= self.solid_fraction)
+        if self.member.number(simulation, "solid_fraction").is_some_and(|found| found >= self.solid_fraction)
         {
             self.reached.store(true, Ordering::Relaxed);
             return Ok(Flow::Stop);
@@ -391,11 +390,4 @@ impl Observer for SnapshotTimer {
         let new = simulation.clock().step() > self.before;
         Ok(if new { Flow::Stop } else { Flow::Continue })
     }
-}
-
-/// One number that a member of a simulation shows.
-pub fn number_of(member: &dyn Member, simulation: &Simulation, name: &str) -> Option<f64> {
-    let mut numbers = Numbers::wanting([name]);
-    member.show(simulation, FREE_SURFACE, &mut numbers);
-    numbers.get(name)
 }

@@ -69,8 +69,9 @@ fn alone(text: &SceneText, scene: &Scene, group: &[&str]) -> SceneText {
         let mut solvers = scene.solvers.iter().filter(|(name, _)| stays(name) == wanted);
         solvers.any(|(_, solver)| solver.parts().contains(&part))
     };
-    let unused =
-        methods::given(scene).into_iter().filter(|given| !uses(true, given.part) && uses(false, given.part));
+    let unused = methods::unused::given(scene)
+        .into_iter()
+        .filter(|given| !uses(true, given.part) && uses(false, given.part));
     out.extend(unused.map(|given| given.path));
     // Items of a list move up when one before them goes.
     let mut alone = text.clone();

@@ -1,7 +1,7 @@
 //! Progress of a run on standard error: one line that is rewritten on a terminal, plain lines
 //! every ten seconds otherwise.
 
-use crate::methods::Member;
+use crate::methods::member::Member;
 use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
 use std::io::{IsTerminal, Write};
 use std::sync::Arc;

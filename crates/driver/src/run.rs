@@ -1,9 +1,6 @@
 //! Running a scene, stage by stage, and taking an interrupted run up again.
 
-mod records;
 mod several;
-
-pub use records::{RecordedStage, Seen, StageRecord};
 
 use crate::check;
 use crate::failure::Failure;
@@ -12,6 +9,7 @@ use crate::folder::{PROGRAM, RunFolder, provenance};
 use crate::model::{self, Model};
 use crate::observers::{self, END_OF_STAGE, Gone, SnapshotTimer};
 use crate::progress;
+use crate::records::{RecordedStage, Seen};
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
@@ -330,7 +328,7 @@ impl<'a> Session<'a> {
         self.model.simulation.begin_segment(self.steps[index])?;
         let Model { simulation, members, .. } = &self.model;
         let seen = members.iter().zip(notes).map(|(member, (name, notes))| {
-            let number = |name| observers::number_of(&**member, simulation, name).unwrap_or(f64::NAN);
+            let number = |name| member.number(simulation, name).unwrap_or(f64::NAN);
             (name, Seen { front: number("front"), height: number("height"), push: notes.push })
         });
         self.records.push(RecordedStage {

@@ -15,8 +15,8 @@ mod walls;
 
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
-pub use crate::methods::SolverSpec;
-use crate::methods::{GrainSpec, MaterialSpec, PairSpec};
+pub use crate::methods::specs::SolverSpec;
+use crate::methods::specs::{GrainSpec, MaterialSpec, PairSpec};
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use coupling::CouplingSpec;

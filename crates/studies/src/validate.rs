@@ -47,7 +47,7 @@ pub use table::table;
 
 pub use granular_driver::Effort;
 use granular_driver::failure::Failure;
-use granular_driver::model::nearest;
+use granular_driver::problems::nearest;
 use row::{Measure, Rows};
 
 /// A validation case.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::parts;
-use crate::run::RecordedStage;
+use crate::records::RecordedStage;
 use crate::scene::{Scene, Writer};
 use crate::scene_file::SceneText;
 use granular_io::vtk::read_vti;

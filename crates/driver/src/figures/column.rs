@@ -1,8 +1,8 @@
 //! Figures of a collapsing column: run-out and height, and where the energy goes.
 
 use super::{Units, title, with_references};
-use crate::model::ColumnSize;
-use crate::run::StageRecord;
+use crate::column::ColumnSize;
+use crate::records::StageRecord;
 use crate::scene::outputs::LawSpec;
 use crate::scene::{ReferenceCurve, Scene};
 use granular_io::Table;

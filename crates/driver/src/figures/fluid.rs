@@ -5,7 +5,7 @@ use super::spectrum::{Spectrum, spectrum};
 use super::{Metric, Units, seen_by, table_of, title, with_references};
 use crate::failure::Failure;
 use crate::folder::RunFolder;
-use crate::run::{RecordedStage, StageRecord};
+use crate::records::{RecordedStage, StageRecord};
 use crate::scene::fluid::ReferenceSpec;
 use crate::scene::{FigureSpec, Scene};
 use granular_io::Table;

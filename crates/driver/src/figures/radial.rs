@@ -1,9 +1,9 @@
 //! Profiles of a collapsing cylinder over the distance from its axis.
 
 use super::{Units, title};
+use crate::column::ColumnSize;
 use crate::failure::Failure;
-use crate::model::ColumnSize;
-use crate::run::StageRecord;
+use crate::records::StageRecord;
 use crate::scene::Scene;
 use crate::scene::outputs::LawSpec;
 use core::f64::consts::TAU;

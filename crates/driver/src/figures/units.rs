@@ -1,7 +1,7 @@
 //! Times of figures: in seconds, or in those of a column that spreads.
 
-use crate::model::ColumnSize;
-use crate::run::StageRecord;
+use crate::column::ColumnSize;
+use crate::records::StageRecord;
 use crate::scene::{Change, FigureSpec, Scene, Stage, WallSpec};
 
 /// Lengths and times that a figure is drawn in.

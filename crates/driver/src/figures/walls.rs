@@ -1,8 +1,8 @@
 //! Walls as lines in the plane that is drawn.
 
 use super::flow::in_plane;
-use crate::model::ColumnSize;
-use crate::run::StageRecord;
+use crate::column::ColumnSize;
+use crate::records::StageRecord;
 use crate::scene::boundaries::MotionSpec;
 use crate::scene::{Change, Dimension, Scene, WallSpec};
 use granular_core::units::Length;

@@ -1,6 +1,6 @@
 //! Laws between solvers of a scene.
 
-use crate::model::{Problems, nearest};
+use crate::problems::{Problems, nearest};
 use crate::scene::Scene;
 
 /// Names of the solvers of a scene in the order in which they are built: those with short steps first, for the others may ask

@@ -20,12 +20,13 @@ mod voronoi;
 mod walls;
 mod whole;
 
-pub(crate) use granular_dem::spec::{DemSpec, GrainSpec, MaterialSpec, PairSpec};
-
-use super::{Building, Claims, Member, Method, Part};
-use crate::model::Problems;
+use crate::methods::contract::{Building, Claims, Method};
+use crate::methods::member::Member;
+use crate::methods::parts::Part;
+use crate::problems::Problems;
 use crate::scene::{Dimension, Scene};
 use granular_core::{D2, D3};
+use granular_dem::spec::DemSpec;
 use std::sync::Arc;
 
 impl Claims for DemSpec {

@@ -1,29 +1,18 @@
 //! Heat on a periodic square: a toy method that shows all that a method takes. It is part of tests only.
 
 mod solver;
+pub(crate) mod spec;
 mod tests;
 
-use super::{Building, Claims, Member, Method, Notes, Part};
-use crate::model::Problems;
+use super::contract::{Building, Claims, Method};
+use super::member::{Member, Notes};
+use super::parts::Part;
+use crate::problems::Problems;
 use crate::scene::Scene;
-use granular_core::units::Length;
 use granular_core::{NodeKey, Simulation, Solver};
-use schemars::JsonSchema;
-use serde::Deserialize;
 use solver::Heat;
+use spec::HeatSpec;
 use std::sync::Arc;
-
-/// Diffusion of a temperature that begins as one wave along x.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HeatSpec {
-    /// Edge of the square.
-    pub size: Length,
-    /// Cells along an edge.
-    pub cells: usize,
-    /// Diffusivity \[m^2/s\].
-    pub diffusivity: f64,
-}
 
 impl Claims for HeatSpec {
     const PARTS: &'static [Part] = &[];

@@ -5,12 +5,13 @@ mod carried;
 mod member;
 mod read;
 
-pub(crate) use granular_lbm::spec::LbmSpec;
-
-use super::{Building, Claims, Member, Method, Part};
-use crate::model::Problems;
+use crate::methods::contract::{Building, Claims, Method};
+use crate::methods::member::Member;
+use crate::methods::parts::Part;
+use crate::problems::Problems;
 use crate::scene::{Dimension, Scene};
 use granular_core::Limits;
+use granular_lbm::spec::LbmSpec;
 use granular_lbm::{D2Q9, D3Q19};
 use std::sync::Arc;
 

@@ -1,10 +1,12 @@
 //! What a method hands the driver: a solver of the simulation, and all that is asked of it.
 
 use super::Part;
+use crate::column::ColumnSize;
 use crate::failure::Failure;
-use crate::model::{ColumnSize, PushRecord};
+use crate::records::PushRecord;
 use crate::scene::{GridSpec, Scene};
-use granular_core::{FieldSink, Location, Shown, ShownAs, Simulation, Solver};
+use granular_core::{FieldSink, Location, Numbers, Shown, ShownAs, Simulation, Solver};
+use granular_tessellate::FREE_SURFACE;
 use std::fmt::{self, Debug};
 use std::path::Path;
 
@@ -38,6 +40,13 @@ pub trait Member: Send + Sync {
     fn show(&self, simulation: &Simulation, free_surface: f64, sink: &mut dyn FieldSink) {
         let _ = free_surface;
         self.solver(simulation).show(sink);
+    }
+
+    /// One number that it shows.
+    fn number(&self, simulation: &Simulation, name: &str) -> Option<f64> {
+        let mut numbers = Numbers::wanting([name]);
+        self.show(simulation, FREE_SURFACE, &mut numbers);
+        numbers.get(name)
     }
 
     /// All that it can show on a grid over which it is averaged; nothing for a solver that has a grid of its own.

@@ -2,10 +2,11 @@
 
 mod files;
 
-use super::{Model, Problems, nearest};
+use super::Model;
 use crate::machine::room_for;
-use crate::methods::Member;
+use crate::methods::member::Member;
 use crate::observers::Line;
+use crate::problems::{Problems, nearest, quoted};
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Output, Scene, Writer};
 use files::{Files, Taken, check_path, spelled};
 use granular_core::{Location, ShownAs};
@@ -109,7 +110,7 @@ pub(super) fn check_files(scene: &Scene, problems: &mut Problems) {
 /// Refuses names of materials that the file of a saved sample cannot hold.
 fn check_materials(scene: &Scene, problems: &mut Problems) {
     for name in scene.materials.keys().filter(|name| name.contains([',', '\n', '\r'])) {
-        let place = format!("materials.{}", super::quoted(name));
+        let place = format!("materials.{}", quoted(name));
         let hint = "a stage saves the grains with the names of their materials, one line a grain";
         problems.add(
             place,

@@ -1,6 +1,6 @@
 //! Where the fields of an output come from: the places of a solver, or a grid over which it is averaged.
 
-use crate::methods::{Averages, Member};
+use crate::methods::member::{Averages, Member};
 use crate::scene::GridSpec;
 use granular_core::{Location, Simulation};
 use granular_io::Frame;

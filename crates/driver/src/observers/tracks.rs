@@ -2,7 +2,7 @@
 
 use super::series::Series;
 use super::{Failure, Flow, Observer, ObserverError, Section, Simulation, SnapshotError};
-use crate::methods::Member;
+use crate::methods::member::Member;
 use crate::scene::Chosen;
 use granular_core::{FieldRef, Location};
 use granular_io::Frame;

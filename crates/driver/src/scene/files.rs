@@ -34,7 +34,7 @@ impl Scene {
     /// # Errors
     /// At the first place that cannot be read.
     pub(crate) fn of(text: &SceneText) -> Result<Self, SceneProblem> {
-        let mut scene: Self = text.parse().map_err(crate::methods::explain)?;
+        let mut scene: Self = text.parse().map_err(crate::methods::specs::explain)?;
         scene.folder = Path::new(text.name()).parent().unwrap_or(Path::new("")).to_owned();
         Ok(scene)
     }

@@ -5,7 +5,7 @@ use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation}
 use granular_driver::failure::Failure;
 use granular_driver::methods::Member;
 use granular_driver::model::Model;
-use granular_driver::observers::{Rest, number_of};
+use granular_driver::observers::Rest;
 use granular_driver::scene::{End, Scene};
 use granular_driver::scene_file::SceneText;
 use std::sync::atomic::AtomicBool;
@@ -218,7 +218,7 @@ struct Watch {
 
 impl Observer for Watch {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let residual = number_of(&*self.member, simulation, "energy_residual").unwrap_or(f64::NAN).abs();
+        let residual = self.member.number(simulation, "energy_residual").unwrap_or(f64::NAN).abs();
         let mut largest = self.largest.lock().expect("only this thread holds it");
         // A residual that is not a number must not get lost in a comparison.
         if residual.is_nan() || residual > *largest {

@@ -11,7 +11,7 @@ use granular_driver::failure::Failure;
 use granular_driver::figures::impact::Impact;
 use granular_driver::model::Model;
 use granular_driver::parallel;
-use granular_driver::run::StageRecord;
+use granular_driver::records::StageRecord;
 use granular_driver::scene_file::SceneText;
 use granular_driver::statistics::larger;
 use granular_io::Table;

@@ -3,8 +3,9 @@
 use granular_core::Scheduled;
 use granular_driver::check;
 use granular_driver::failure::Failure;
-use granular_driver::model::{Model, PushRecord};
+use granular_driver::model::Model;
 use granular_driver::observers;
+use granular_driver::records::PushRecord;
 use granular_driver::scene::{End, Scene};
 use granular_driver::scene_file::SceneText;
 use std::sync::Arc;

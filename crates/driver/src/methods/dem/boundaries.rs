@@ -3,7 +3,7 @@
 use super::materials::NamedMaterials;
 use super::sample::grading_of;
 use crate::machine::room_for;
-use crate::model::Problems;
+use crate::problems::Problems;
 use crate::scene::boundaries::{InletSpec, MotionSpec, OutletSpec};
 use crate::scene::{Change, Scene};
 use granular_core::units::Length;

@@ -4,10 +4,13 @@ use super::boundaries::{self, Surroundings};
 use super::materials::{NamedMaterials, inlet_materials};
 use super::member::Grains;
 use super::walls::{self, Beside};
-use super::{Building, DemSpec, Member, cell, push, sample, stages, stiffness, whole};
-use crate::model::{Problems, nearest};
+use super::{cell, push, sample, stages, stiffness, whole};
+use crate::methods::contract::Building;
+use crate::methods::member::Member;
+use crate::problems::{Problems, nearest};
 use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
 use granular_core::{Dim, Vector};
+use granular_dem::spec::DemSpec;
 use granular_dem::{Dem, Setup, SetupError, Wall};
 use std::sync::Arc;
 

@@ -2,7 +2,7 @@
 
 use super::materials::NamedMaterials;
 use super::sample::{BuiltSample, grading_of, refuse_many};
-use crate::model::{Problems, nearest};
+use crate::problems::{Problems, nearest};
 use crate::scene::cell::{CellChange, CellSpec};
 use crate::scene::{Change, GradingSpec, Sample, Scene};
 use granular_core::{Dim, Linear, Vector};

@@ -1,7 +1,7 @@
 //! Grains averaged over the cells of a grid.
 
 use super::voronoi;
-use crate::methods::{Averages, NoGrid};
+use crate::methods::member::{Averages, NoGrid};
 use crate::scene::GridSpec;
 use granular_core::units::Length;
 use granular_core::{D2, Dim, FieldSink, Location, NodeKey, Simulation, Vector};

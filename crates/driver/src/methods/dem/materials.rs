@@ -1,7 +1,7 @@
 //! Materials of a scene of grains.
 
 use super::{DemSpec, pairs, stiffness};
-use crate::model::{Problems, nearest, quoted};
+use crate::problems::{Problems, nearest, quoted};
 use crate::scene::Scene;
 use granular_dem::{MaterialId, Materials};
 use std::collections::BTreeMap;

@@ -4,15 +4,18 @@ use super::falling::{self, Region};
 use super::grid::Grid;
 use super::sample_file::SavedSample;
 use super::stages::{self, Action};
-use super::{DemSpec, boundaries, probes, push, voronoi};
+use super::{boundaries, probes, push, voronoi};
+use crate::column::ColumnSize;
 use crate::failure::Failure;
-use crate::methods::{Averages, Building, Claims, Member, NoGrid, Notes, Part};
-use crate::model::{ColumnSize, Problems};
-use crate::observers::number_of;
+use crate::methods::contract::{Building, Claims};
+use crate::methods::member::{Averages, Member, NoGrid, Notes};
+use crate::methods::parts::Part;
+use crate::problems::Problems;
 use crate::scene::{GridSpec, Scene};
 use granular_core::units::Time;
 use granular_core::{Dim, FieldSink, NodeKey, Shown, Simulation, Solver};
 use granular_dem::Dem;
+use granular_dem::spec::DemSpec;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -113,7 +116,7 @@ impl<D: Dim> Member for Grains<D> {
     }
 
     fn progress(&self, simulation: &Simulation) -> String {
-        let overlap = number_of(self, simulation, "largest_overlap");
+        let overlap = self.number(simulation, "largest_overlap");
         overlap.map_or(String::new(), |overlap| format!("overlap {overlap:.2} %"))
     }
 

@@ -1,9 +1,8 @@
 //! Contacts between two materials that a scene states.
 
-use super::PairSpec;
 use super::materials::NamedMaterials;
-use crate::model::Problems;
-use granular_dem::spec::ContactSpec;
+use crate::problems::Problems;
+use granular_dem::spec::{ContactSpec, PairSpec};
 
 /// Gives the materials what the scene states of their pairs.
 pub(super) fn state(

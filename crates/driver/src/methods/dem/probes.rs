@@ -1,6 +1,6 @@
 //! Numbers that the driver works out from what a solver lends, beside those that the solver shows itself.
 
-use crate::methods::Number;
+use crate::methods::member::Number;
 use core::f64::consts::TAU;
 use granular_core::{Dim, FieldSink, GrainMotion, Provides, Shown, ShownAs, Solver, Vector};
 use granular_dem::Dem;

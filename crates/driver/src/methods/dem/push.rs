@@ -1,6 +1,7 @@
 //! Pushes: grains that get a velocity at the start of a stage.
 
-use crate::model::{Problems, PushRecord, nearest};
+use crate::problems::{Problems, nearest};
+use crate::records::PushRecord;
 use crate::scene::push::PushProfileSpec;
 use crate::scene::{Change, FigureSpec, Scene};
 use granular_core::{Dim, Linear, Vector};

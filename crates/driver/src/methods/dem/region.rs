@@ -1,6 +1,6 @@
 //! Regions to which a sample is cut.
 
-use crate::model::Problems;
+use crate::problems::Problems;
 use crate::scene::region::RegionSpec;
 use granular_core::units::Length;
 use granular_core::{Dim, Linear, Vector};

@@ -3,12 +3,13 @@
 mod cylinder;
 mod saved;
 
-use super::GrainSpec;
 use super::materials::NamedMaterials;
+use crate::column::ColumnSize;
 use crate::machine;
-use crate::model::{ColumnSize, Problems};
+use crate::problems::Problems;
 use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
 use granular_core::{Dim, Linear, Spin, Vector};
+use granular_dem::spec::GrainSpec;
 use granular_dem::{Grain, MaterialId};
 use granular_packing::{Grading, GradingError, Lattice, PackingError, Sides, ballistic, loose_lattice};
 use std::path::Path;

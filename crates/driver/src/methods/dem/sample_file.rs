@@ -5,9 +5,9 @@
 //! all that follows; a file made by hand may leave the checksum out. Forces are not kept: where grains
 //! overlap, contacts push at once, and friction builds up anew, so that a sample needs a short stage to rest.
 
+use crate::column::{ColumnSize, Round};
 use crate::failure::Failure;
 use crate::machine;
-use crate::model::{ColumnSize, Round};
 use granular_core::{Dim, Spin, Vector};
 use granular_dem::{Dem, Grain, MaterialId};
 use granular_io::write_atomically;

@@ -1,6 +1,6 @@
 //! One sample: compressed without friction, then sheared or compressed with it.
 
-use crate::calibrate::Plan;
+use crate::calibrate::plan::Plan;
 use crate::failure::Failure;
 use crate::model;
 use crate::scene::cell::CellSpec;

@@ -3,7 +3,8 @@
 use super::cell;
 use super::materials::NamedMaterials;
 use super::push::{self, PushAction};
-use crate::model::{Problems, PushRecord, nearest};
+use crate::problems::{Problems, nearest};
+use crate::records::PushRecord;
 use crate::scene::{Change, Scene, Stage};
 use granular_core::Dim;
 use granular_core::units::Acceleration;

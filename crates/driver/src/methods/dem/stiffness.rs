@@ -1,11 +1,10 @@
 //! What makes the contacts of a material stiff: a stiffness, or elastic constants.
 
-use super::MaterialSpec;
 use super::materials::NamedMaterials;
-use crate::model::{Problems, quoted};
+use crate::problems::{Problems, quoted};
 use crate::scene::Scene;
 use granular_core::Dim;
-use granular_dem::spec::ContactSpec;
+use granular_dem::spec::{ContactSpec, MaterialSpec};
 
 /// Whether a material states what the contact model needs, and nothing that contradicts it.
 pub(super) fn is_stated(

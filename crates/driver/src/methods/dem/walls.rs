@@ -1,8 +1,9 @@
 //! Walls of a scene.
 
 use super::boundaries::{self, Surroundings};
+use crate::column::{ColumnSize, Round};
 use crate::machine;
-use crate::model::{ColumnSize, Problems, Round};
+use crate::problems::Problems;
 use crate::scene::WallSpec;
 use granular_core::units::Length;
 use granular_core::{Dim, Vector};

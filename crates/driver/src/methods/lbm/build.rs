@@ -3,12 +3,13 @@
 use super::carried::Carried;
 use super::member::{Action, Water};
 use super::read::{Fluid, Reader, components};
-use super::{Building, LbmSpec, Member};
-use crate::model::{Problems, quoted};
+use crate::methods::contract::Building;
+use crate::methods::member::Member;
+use crate::problems::{Problems, quoted};
 use crate::scene::{Change, Scene};
 use granular_core::{Dim, Limits, NodeKey, Solver};
 use granular_coupling::{CarriedObstacles, PrescribedMotion};
-use granular_lbm::spec::PrecisionSpec;
+use granular_lbm::spec::{LbmSpec, PrecisionSpec};
 use granular_lbm::{Lattice, Lbm, Real, SetupError};
 use std::sync::Arc;
 

@@ -8,8 +8,8 @@ pub(super) use grains::Carried;
 /// Without grains there are none.
 #[cfg(not(feature = "dem"))]
 mod nothing {
-    use crate::methods::Building;
-    use crate::model::Problems;
+    use crate::methods::contract::Building;
+    use crate::problems::Problems;
     use crate::scene::Scene;
     use granular_core::{Dim, NodeKey};
     use granular_lbm::{Lattice, Lbm, Real, Setup};

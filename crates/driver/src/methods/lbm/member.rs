@@ -1,9 +1,10 @@
 //! A fluid as a member of a simulation.
 
-use super::LbmSpec;
-use crate::methods::{Claims, Member, Notes, Part};
-use crate::observers::number_of;
+use crate::methods::contract::Claims;
+use crate::methods::member::{Member, Notes};
+use crate::methods::parts::Part;
 use granular_core::{Dim, NodeKey, Simulation, Solver, Spin, Vector};
+use granular_lbm::spec::LbmSpec;
 use granular_lbm::{Lattice, Lbm, Real};
 
 /// A change of the fluid at the start of a stage.
@@ -55,7 +56,7 @@ impl<L: Lattice<Q>, T: Real, const Q: usize> Member for Water<L, T, Q> {
     }
 
     fn progress(&self, simulation: &Simulation) -> String {
-        let speed = number_of(self, simulation, "largest_speed");
+        let speed = self.number(simulation, "largest_speed");
         speed.map_or(String::new(), |speed| format!("largest speed {speed:.3e} m/s"))
     }
 

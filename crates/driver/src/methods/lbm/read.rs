@@ -6,7 +6,7 @@ mod obstacles;
 mod spacing;
 
 use crate::machine::room_for;
-use crate::model::{Problems, quoted};
+use crate::problems::{Problems, quoted};
 use crate::scene::Scene;
 use crate::scene::fluid::{FaceSpec, FacesSpec, FluidSpec, ProfileSpec, StartSpec};
 pub(super) use changes::components;

@@ -2,7 +2,8 @@
 
 use super::super::region::Region;
 use super::{BuiltSample, LOOSE_GAP, Refusal, SETTLED, check_sizes, grading_of, refuse_many};
-use crate::model::{ColumnSize, Problems, Round};
+use crate::column::{ColumnSize, Round};
+use crate::problems::Problems;
 use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
 use core::f64::consts::PI;
 use granular_core::{Dim, Linear, Vector};

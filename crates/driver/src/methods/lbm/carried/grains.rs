@@ -1,7 +1,7 @@
 //! Grains that carry obstacles.
 
-use crate::methods::Building;
-use crate::model::Problems;
+use crate::methods::contract::Building;
+use crate::problems::Problems;
 use crate::scene::Scene;
 use crate::scene::coupling::CouplingSpec;
 use granular_core::{Dim, GrainMotion, NodeKey, Provides};

@@ -1,7 +1,7 @@
 //! What stages change of the motion of faces and obstacles.
 
 use super::Reader;
-use crate::model::nearest;
+use crate::problems::nearest;
 use crate::scene::Change;
 use granular_core::{Dim, Linear};
 use granular_coupling::Body;

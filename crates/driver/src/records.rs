@@ -1,6 +1,5 @@
 //! How stages began and ended, for `run.json` and figures.
 
-use crate::model::PushRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -69,4 +68,30 @@ fn unknown() -> f64 {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_unknown(value: &f64) -> bool {
     value.is_nan()
+}
+
+/// What the pushes at the start of a stage did, and the units in which impacts are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PushRecord {
+    /// Kinetic energy given \[J; J/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub energy: f64,
+    /// Momentum given along the direction \[kg m/s; kg/s in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub momentum: f64,
+    /// Velocity given to the grains that were moved fastest \[m/s\].
+    #[serde(with = "crate::json::number")]
+    pub speed: f64,
+    /// Mean diameter of the grains \[m\].
+    #[serde(with = "crate::json::number")]
+    pub diameter: f64,
+    /// Mass of all grains \[kg; kg/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub mass: f64,
+    /// Gravity \[m/s^2\].
+    #[serde(with = "crate::json::number")]
+    pub gravity: f64,
+    /// Potential energy of the grains above the origin \[J; J/m in the plane\].
+    #[serde(with = "crate::json::number")]
+    pub potential: f64,
 }
