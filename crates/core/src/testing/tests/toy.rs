@@ -3,7 +3,7 @@
 use crate::solver::check_step;
 use crate::{
     Blocks, FieldRef, FieldSink, Limits, Location, Memory, Section, Shown, ShownAs, SnapshotError, Solver,
-    StepError, StepLimit, StepRule,
+    StepError, StepLimit,
 };
 use glam::DVec2;
 
@@ -128,7 +128,7 @@ impl Solver for Toy {
             Some(Fault::LimitBelowTheStep) => 1e-3,
             _ => 2.0,
         };
-        let limit = StepLimit { name: "period", dt, rule: StepRule::AtMost, why: "stability".to_owned() };
+        let limit = StepLimit::at_most("period", dt, "stability");
         report.steps.push(limit.clone());
         if self.has(Fault::SameLimitTwice) {
             report.steps.push(limit);
