@@ -41,6 +41,10 @@ impl fmt::Debug for Simulation {
     }
 }
 
+/// Steps of a segment after which limits are asked for again. By their count, so that the bits are the same however a run is
+/// cut into calls, and after a restart.
+const ASKED_EVERY: u64 = 100;
+
 impl Simulation {
     /// A simulation of one solver at time zero.
     pub fn new(solver: Box<dyn Solver>) -> Self {
@@ -143,7 +147,7 @@ impl Simulation {
     /// Starts a segment with its own step \[s\]; time goes on from where it is.
     ///
     /// # Errors
-    /// When `dt` is not a positive finite number, or solvers cannot share it.
+    /// When `dt` is not a positive finite number, is beyond a limit that must not be exceeded, or solvers cannot share it.
     pub fn begin_segment(&mut self, dt: f64) -> Result<(), StepError> {
         check_step(dt)?;
         self.graph.share(dt)?;
@@ -153,10 +157,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes `steps` steps of the present segment without observers.
+    /// Takes `steps` steps of the present segment without observers. Limits are asked for again every 100 of them.
     ///
     /// # Errors
-    /// When a solver fails.
+    /// When a solver fails, or the step is now beyond a limit that must not be exceeded and cannot be divided.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         let outcome = self.take(steps);
         self.graph.publish();
@@ -165,14 +169,26 @@ impl Simulation {
 
     /// Takes steps that nobody outside of the simulation has a look at yet.
     fn take(&mut self, steps: u64) -> Result<(), StepError> {
-        // Solvers alone know better whether they have work for more threads than one.
-        if self.graph.edges.is_empty() {
-            self.graph.advance(steps)?;
-        } else {
-            inside_pool(|| self.graph.advance(steps))?;
+        let mut left = steps;
+        while left > 0 {
+            let taken = self.clock.steps_in_segment;
+            let mut count = left;
+            if self.graph.limits_may_change() {
+                if taken > 0 && taken.is_multiple_of(ASKED_EVERY) {
+                    self.graph.share_again(self.clock.dt)?;
+                }
+                count = count.min(ASKED_EVERY - taken % ASKED_EVERY);
+            }
+            // Solvers alone know better whether they have work for more threads than one.
+            if self.graph.edges.is_empty() {
+                self.graph.advance(count)?;
+            } else {
+                inside_pool(|| self.graph.advance(count))?;
+            }
+            self.clock.steps_in_segment += count;
+            self.clock.step += count;
+            left -= count;
         }
-        self.clock.steps_in_segment += steps;
-        self.clock.step += steps;
         Ok(())
     }
 
@@ -181,6 +197,7 @@ impl Simulation {
         let mut clock = Section::new("clock");
         clock.put("start and dt", &[self.clock.start, self.clock.dt]);
         clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
+        self.graph.save_shares(&mut clock);
         std::iter::once(clock).chain(self.graph.save()).collect()
     }
 
@@ -193,15 +210,9 @@ impl Simulation {
         let times: Vec<f64> = clock.array_of("start and dt", 2)?;
         let steps: Vec<u64> = clock.array_of("steps in segment and run", 2)?;
         self.graph.restore(sections)?;
+        self.graph.restore_shares(clock, times[1])?;
         self.graph.publish();
         self.clock = Clock { start: times[0], dt: times[1], steps_in_segment: steps[0], step: steps[1] };
-        if check_step(self.clock.dt).is_ok() {
-            let shared = self.graph.share(self.clock.dt);
-            shared.map_err(|error| SnapshotError::Damaged {
-                place: "clock/start and dt".to_owned(),
-                found: error.to_string(),
-            })?;
-        }
         Ok(())
     }
 }

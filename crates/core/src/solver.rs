@@ -16,6 +16,17 @@ pub trait Solver: Any + Send {
     fn size(&self) -> (usize, &'static str);
     /// Limits on the step and bounds on numbers; feeds the check and the run loop.
     fn limits(&self, report: &mut Limits);
+    /// The limits on the step that must not be exceeded ([`StepRule::Exactly`] and [`StepRule::AtMost`]), as they stand now;
+    /// others do not count. A simulation asks for them every 100 of its steps, so they should cost little beside so many. By
+    /// default they are those of [`Solver::limits`].
+    fn hard_limits(&self, report: &mut Limits) {
+        self.limits(report);
+    }
+    /// Whether [`Solver::hard_limits`] may change while steps are taken. A solver alone whose limits follow from its setup is
+    /// asked at the start of a segment only.
+    fn hard_limits_may_change(&self) -> bool {
+        true
+    }
     /// Advances by `steps` steps of exactly `dt` \[s\]. Steps may be fused: the bits are those
     /// of one at a time.
     ///
@@ -98,7 +109,10 @@ pub enum StepRule {
 
 /// One limit on the step.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StepLimit {
+    /// Whose limit it is: the name of the solver in its simulation, or of the law. Empty before a simulation fills it in.
+    pub solver: String,
     /// Name, unique in the report.
     pub name: &'static str,
     /// The step \[s\].
@@ -107,6 +121,27 @@ pub struct StepLimit {
     pub rule: StepRule,
     /// Where it comes from, with the numbers that made it.
     pub why: String,
+}
+
+impl StepLimit {
+    /// A step \[s\] that cannot be chosen.
+    pub fn exactly(name: &'static str, dt: f64, why: impl Into<String>) -> Self {
+        Self::new(StepRule::Exactly, name, dt, why.into())
+    }
+
+    /// A step \[s\] beyond which the scheme is unstable.
+    pub fn at_most(name: &'static str, dt: f64, why: impl Into<String>) -> Self {
+        Self::new(StepRule::AtMost, name, dt, why.into())
+    }
+
+    /// A step \[s\] that is taken unless another is chosen.
+    pub fn recommended(name: &'static str, dt: f64, why: impl Into<String>) -> Self {
+        Self::new(StepRule::Recommended, name, dt, why.into())
+    }
+
+    fn new(rule: StepRule, name: &'static str, dt: f64, why: String) -> Self {
+        Self { solver: String::new(), name, dt, rule, why }
+    }
 }
 
 /// A number other than the step that must stay below a bound.

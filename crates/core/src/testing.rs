@@ -20,6 +20,7 @@
 mod allocator;
 mod contract;
 mod damage;
+mod limits;
 mod loads;
 #[cfg(test)]
 mod tests;

@@ -349,6 +349,14 @@ impl<D: Dim> Solver for Dem<D> {
         self.report_limits(report);
     }
 
+    fn hard_limits(&self, report: &mut Limits) {
+        self.report_hard_limits(report);
+    }
+
+    fn hard_limits_may_change(&self) -> bool {
+        self.stability_depends_on_the_state()
+    }
+
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
         self.clock.run_at(dt);

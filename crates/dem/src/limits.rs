@@ -8,7 +8,7 @@ use crate::material::{PairProperties, Tension};
 use crate::setup::{ContactModel, LeverArm};
 use crate::softness::{HERTZ, LINEAR, rounded_up, softer_than};
 use granular_core::Shape;
-use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, StepRule, Vector};
+use granular_core::{Bound, Dim, Limits, Linear, Memory, Solver, StepLimit, Vector};
 use stiffest::{Oscillator, Stiffest};
 
 /// Overlap over radius above which an impact is called too soft.
@@ -34,42 +34,12 @@ impl<D: Dim> Dem<D> {
     }
 
     pub(crate) fn report_limits(&self, report: &mut Limits) {
-        let stiffest = self.stiffest_pairs();
-        let by =
-            |value: fn(&Stiffest) -> f64| stiffest.iter().min_by(move |a, b| value(a).total_cmp(&value(b)));
-        let Some(shortest) = by(|pair| pair.contact_time) else { return };
-        let fraction = self.options.steps_per_contact;
-        report.steps.push(StepLimit {
-            name: "contact time",
-            dt: shortest.contact_time / fraction,
-            rule: StepRule::Recommended,
-            why: format!(
-                "1/{fraction} of the shortest contact time, {:.4e} s ({}, {})",
-                shortest.contact_time, shortest.names, shortest.assumed
-            ),
-        });
-        if let Some(first) = by(|pair| pair.rayleigh_time).filter(|pair| pair.rayleigh_time.is_finite()) {
-            report.steps.push(StepLimit {
-                name: "Rayleigh time",
-                dt: RAYLEIGH_SHARE * first.rayleigh_time,
-                rule: StepRule::Recommended,
-                why: format!("{RAYLEIGH_SHARE} of {:.4e} s, lightest grains", first.rayleigh_time),
-            });
+        let stiffest = self.stiffest_pairs(true);
+        if stiffest.is_empty() {
+            return;
         }
-        let neighbours = self.most_neighbours();
-        let turns = self.turns();
-        let step = |pair: &Stiffest| pair.oscillator.largest_step::<D>(neighbours, turns);
-        let Some(tightest) = stiffest.iter().min_by(|a, b| step(a).total_cmp(&step(b))) else { return };
-        report.steps.push(StepLimit {
-            name: "stability",
-            dt: step(tightest),
-            rule: StepRule::AtMost,
-            why: format!(
-                "leapfrog with damping, {neighbours} contacts per grain, {}, {}",
-                tightest.names, tightest.assumed
-            ),
-        });
-        report.steps.extend(self.servo_limits(&stiffest));
+        self.report_accuracy(&stiffest, report);
+        self.report_stability(&stiffest, report);
         report.bounds.push(self.softness(&stiffest));
         report.bounds.push(Bound {
             name: "overlap at the start",
@@ -79,6 +49,58 @@ impl<D: Dim> Dem<D> {
             refuses: true,
             why: self.deepest_named(),
         });
+    }
+
+    /// What must not be exceeded, as it stands now.
+    pub(crate) fn report_hard_limits(&self, report: &mut Limits) {
+        self.report_stability(&self.stiffest_pairs(false), report);
+    }
+
+    /// Whether stability depends on speeds, or on the number of grains.
+    pub(crate) fn stability_depends_on_the_state(&self) -> bool {
+        self.options.contact == ContactModel::Hertz
+            || self.moving_walls.servos().next().is_some()
+            || self.inlets.inlets().next().is_some()
+    }
+
+    /// Steps that resolve a contact.
+    fn report_accuracy(&self, stiffest: &[Stiffest], report: &mut Limits) {
+        let by =
+            |value: fn(&Stiffest) -> f64| stiffest.iter().min_by(move |a, b| value(a).total_cmp(&value(b)));
+        let Some(shortest) = by(|pair| pair.contact_time) else { return };
+        let fraction = self.options.steps_per_contact;
+        report.steps.push(StepLimit::recommended(
+            "contact time",
+            shortest.contact_time / fraction,
+            format!(
+                "1/{fraction} of the shortest contact time, {:.4e} s ({}, {})",
+                shortest.contact_time, shortest.names, shortest.assumed
+            ),
+        ));
+        if let Some(first) = by(|pair| pair.rayleigh_time).filter(|pair| pair.rayleigh_time.is_finite()) {
+            report.steps.push(StepLimit::recommended(
+                "Rayleigh time",
+                RAYLEIGH_SHARE * first.rayleigh_time,
+                format!("{RAYLEIGH_SHARE} of {:.4e} s, lightest grains", first.rayleigh_time),
+            ));
+        }
+    }
+
+    /// Steps beyond which the scheme is unstable.
+    fn report_stability(&self, stiffest: &[Stiffest], report: &mut Limits) {
+        let neighbours = self.most_neighbours();
+        let turns = self.turns();
+        let step = |pair: &Stiffest| pair.oscillator.largest_step::<D>(neighbours, turns);
+        let Some(tightest) = stiffest.iter().min_by(|a, b| step(a).total_cmp(&step(b))) else { return };
+        report.steps.push(StepLimit::at_most(
+            "stability",
+            step(tightest),
+            format!(
+                "leapfrog with damping, {neighbours} contacts per grain, {}, {}",
+                tightest.names, tightest.assumed
+            ),
+        ));
+        report.steps.extend(self.servo_limits(stiffest));
     }
 
     /// Contacts that one of the smallest grains can have at once.
@@ -105,15 +127,14 @@ impl<D: Dim> Dem<D> {
         let grains = layer.min(self.len() as f64).max(1.0);
         let stiffness = pairs.iter().map(|pair| pair.stiffness).fold(0.0, f64::max);
         let (wall, servo) = self.moving_walls.servos().min_by(|a, b| a.1.mass.total_cmp(&b.1.mass))?;
-        Some(StepLimit {
-            name: "wall under a force",
-            dt: 2.0 * (servo.mass / (grains * stiffness)).sqrt(),
-            rule: StepRule::AtMost,
-            why: format!(
+        Some(StepLimit::at_most(
+            "wall under a force",
+            2.0 * (servo.mass / (grains * stiffness)).sqrt(),
+            format!(
                 "`{}` of {:.3e} kg on the springs of {grains:.0} grains",
                 self.walls[wall].name, servo.mass
             ),
-        })
+        ))
     }
 
     /// Overlap of an impact at the fastest speed there can be: present speeds, and a fall
@@ -282,5 +303,5 @@ pub fn stability_step<D: Dim>(
     neighbours: usize,
     turns: bool,
 ) -> f64 {
-    Oscillator::linear(pair, effective_mass, tension).largest_step::<D>(neighbours, turns)
+    Oscillator::linear(pair, effective_mass, pair.zeta(tension)).largest_step::<D>(neighbours, turns)
 }

@@ -8,7 +8,7 @@ use crate::setup::{Face, Setup};
 use crate::{OddRate, Operator, show};
 use granular_core::{
     Bound, Dim, FieldSink, Limits, Linear, Location, Memory, Motion, Section, Shown, SnapshotError, Solver,
-    StepError, StepLimit, StepRule, Vector,
+    StepError, StepLimit, Vector,
 };
 
 /// Largest Mach number; errors of compressibility grow with its square.
@@ -83,16 +83,15 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let setup = &self.setup;
         let Setup { spacing, viscosity, time_step, .. } = *setup;
         let (tau, speed) = (setup.tau(), self.largest_expected_speed());
-        report.steps.push(StepLimit {
-            name: "lattice",
-            dt: time_step,
-            rule: StepRule::Exactly,
-            why: format!(
+        report.steps.push(StepLimit::exactly(
+            "lattice",
+            time_step,
+            format!(
                 "relaxation time {tau:.5} steps, {:.4} m/s per cell and step, Lambda {:.4}",
                 setup.lattice_speed(),
                 setup.operator.magic(tau)
             ),
-        });
+        ));
         // A flow that a body force drives says nothing of its speed beforehand.
         let known = |why: String| {
             if speed > 0.0 {
@@ -195,6 +194,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
 
     fn limits(&self, report: &mut Limits) {
         self.report_limits(report);
+    }
+
+    fn hard_limits_may_change(&self) -> bool {
+        false
     }
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {

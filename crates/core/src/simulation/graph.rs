@@ -41,11 +41,9 @@ impl Graph {
     /// Takes `steps` steps of the simulation, one group after the other: they do not see each other.
     pub(super) fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         (0..self.groups.len()).try_for_each(|group| {
-            let count = steps * self.groups[group].steps;
-            match self.groups[group].alone() {
-                Some(alone) => self.nodes[alone].take(count),
-                None => self.long_steps(group, count),
-            }
+            let first = &mut self.nodes[self.groups[group].slow[0]];
+            let count = steps * first.substeps;
+            if self.groups[group].is_alone() { first.take(count) } else { self.long_steps(group, count) }
         })
     }
 

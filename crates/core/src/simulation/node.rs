@@ -41,7 +41,8 @@ pub(super) struct Node {
     pub(super) solver: Box<dyn Solver>,
     /// Longest step chosen for it \[s\].
     pub(super) chosen: Option<f64>,
-    /// Steps within the longer one, and how long each is \[s\].
+    /// Steps within the longer one, and how long each is \[s\]. For those that take the long step of their group whole, the
+    /// longer one is the step of the simulation.
     pub(super) substeps: u64,
     pub(super) dt: f64,
     /// The solvers that take their steps within each of its own.
@@ -85,8 +86,8 @@ impl Node {
         chosen.or_else(|| limits.recommended().map(|limit| limit.dt))
     }
 
-    /// Number and length \[s\] of its equal steps within a `long` one \[s\].
-    pub(super) fn divide(&self, long: f64, limits: &Limits) -> Result<(u64, f64), StepError> {
+    /// Number, at least so many, and length \[s\] of its equal steps within a `long` one \[s\].
+    pub(super) fn divide(&self, long: f64, limits: &Limits, least: u64) -> Result<(u64, f64), StepError> {
         if let Some(exact) = exactly(limits) {
             let whole = (long / exact.dt).round();
             if whole < 1.0 || (long / exact.dt - whole).abs() > FIT * whole {
@@ -98,7 +99,7 @@ impl Node {
             return self.few_enough(long, whole, exact.dt, limits);
         }
         let longest = self.longest(limits).unwrap_or(long);
-        let count = (long / longest * (1.0 - FIT)).ceil().max(1.0);
+        let count = (long / longest * (1.0 - FIT)).ceil().max(least as f64);
         self.few_enough(long, count, long / count, limits)
     }
 
@@ -121,7 +122,23 @@ impl Node {
                 refuse(long, format!("it must be that of {}", self.exact_steps(exact)))
             }
             Some(exact) => Ok(exact.dt),
-            None => Ok(long),
+            None => self.check_allowed(long, limits).map(|()| long),
+        }
+    }
+
+    /// Refuses a step \[s\] beyond a limit that must not be exceeded.
+    pub(super) fn check_allowed(&self, dt: f64, limits: &Limits) -> Result<(), StepError> {
+        match limits.largest_allowed() {
+            Some(limit) if dt > limit.dt * (1.0 + FIT) => {
+                let StepLimit { solver, name, dt: allowed, why, .. } = limit;
+                refuse(
+                    dt,
+                    format!(
+                        "`{solver}` allows at most {allowed:e} s now ({name}: {why}); take a shorter step"
+                    ),
+                )
+            }
+            _ => Ok(()),
         }
     }
 

@@ -12,14 +12,12 @@ pub(super) struct Group {
     pub(super) slow: Vec<usize>,
     /// Those that take their steps within the long one. Others take them within steps of these.
     pub(super) partners: Vec<usize>,
-    /// Long steps within one of the simulation.
-    pub(super) steps: u64,
 }
 
 impl Group {
-    /// The free solver, if it is one.
-    pub(super) fn alone(&self) -> Option<usize> {
-        if let [alone] = self.members[..] { Some(alone) } else { None }
+    /// Whether it is one free solver.
+    pub(super) fn is_alone(&self) -> bool {
+        self.members.len() == 1
     }
 }
 
@@ -81,7 +79,6 @@ impl Graph {
             members: (0..first.len()).filter(|&k| first[k] == group).collect(),
             slow: held_by(Holder::None).filter(|&k| first[k] == group).collect(),
             partners: held_by(Holder::LongStep).filter(|&k| first[k] == group).collect(),
-            steps: 1,
         };
         self.groups = (0..first.len()).filter(|&k| first[k] == k).map(group_of).collect();
     }

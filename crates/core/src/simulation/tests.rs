@@ -3,6 +3,7 @@
 mod chain;
 mod device;
 mod free;
+mod limits;
 mod stations;
 mod vessel;
 
@@ -10,7 +11,7 @@ use super::*;
 use crate::field::{FieldRef, FieldSink, Numbers};
 use crate::observer::{Flow, ObserverError, Scheduled};
 use crate::solver::StepRule;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use vessel::{Pipe, Vessel};
 
 const FAST: Option<(f64, StepRule)> = Some((0.03, StepRule::AtMost));

@@ -1,9 +1,8 @@
-//! The promises on steps, restarts and limits.
+//! The promises on steps and restarts.
 
 use super::allocator::CountingAllocator;
 use crate::snapshot::Section;
-use crate::solver::{Limits, Solver};
-use std::collections::HashSet;
+use crate::solver::Solver;
 use std::fmt;
 
 /// A promise that a solver did not keep.
@@ -220,47 +219,6 @@ impl Contract {
             }
         })
     }
-
-    /// Limits on the step are positive and finite, no value is NaN, names are unique and reasons
-    /// given, at the start and later; and the step of this test keeps them.
-    ///
-    /// # Errors
-    /// When the promise is not kept.
-    pub fn limits(&self) -> Result<(), Breach> {
-        const WHY: &str = "limits are positive, finite and named once";
-        let mut solver = (self.build)();
-        for _ in 0..2 {
-            let mut report = Limits::default();
-            solver.limits(&mut report);
-            if let Some(found) = fault_in(&report, self.dt) {
-                return Err(Breach::new(WHY, found));
-            }
-            self.go(solver.as_mut(), self.steps, WHY)?;
-        }
-        Ok(())
-    }
-}
-
-fn fault_in(report: &Limits, dt: f64) -> Option<String> {
-    let mut names = HashSet::new();
-    for limit in &report.steps {
-        if !(limit.dt.is_finite() && limit.dt > 0.0) {
-            return Some(format!("limit `{}` is {} s", limit.name, limit.dt));
-        }
-        if limit.why.is_empty() || !names.insert(limit.name) {
-            return Some(format!("limit `{}` has no reason or stands there twice", limit.name));
-        }
-    }
-    for bound in &report.bounds {
-        if bound.value.is_nan() || bound.allowed.is_nan() {
-            return Some(format!("bound `{}` has {} of {}", bound.name, bound.value, bound.allowed));
-        }
-        if bound.why.is_empty() || !names.insert(bound.name) {
-            return Some(format!("bound `{}` has no reason or stands there twice", bound.name));
-        }
-    }
-    let allowed = report.largest_allowed().filter(|limit| limit.dt < dt)?;
-    Some(format!("the test takes steps of {dt} s, but `{}` allows {} s", allowed.name, allowed.dt))
 }
 
 /// All that decides how a run goes on.

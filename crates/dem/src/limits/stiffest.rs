@@ -1,7 +1,7 @@
 //! The stiffest contact of two materials, and the step that it bears.
 
 use crate::dem::Dem;
-use crate::material::{PairProperties, Tension};
+use crate::material::PairProperties;
 use crate::setup::ContactModel;
 use granular_core::{Dim, Linear};
 use std::f64::consts::PI;
@@ -42,6 +42,8 @@ pub(super) struct Oscillator {
 #[derive(Clone, Copy)]
 struct Couple {
     properties: PairProperties,
+    /// Damping ratio; found once, since that takes longer than all the rest.
+    zeta: f64,
     effective_mass: f64,
     effective_radius: f64,
     /// Of the lighter grain \[kg\].
@@ -50,9 +52,9 @@ struct Couple {
 }
 
 impl Oscillator {
-    pub(super) fn linear(pair: &PairProperties, effective_mass: f64, tension: Tension) -> Self {
+    pub(super) fn linear(pair: &PairProperties, effective_mass: f64, zeta: f64) -> Self {
         let normal = pair.normal_stiffness / effective_mass;
-        let normal_damping = 2.0 * pair.zeta(tension) * normal.sqrt();
+        let normal_damping = 2.0 * zeta * normal.sqrt();
         Self {
             normal,
             tangential: pair.tangential_stiffness / effective_mass,
@@ -63,10 +65,10 @@ impl Oscillator {
 
     /// The Hertz contact about an overlap \[m\]: slope of the force `2 E* a`, damping `2
     /// sqrt(5/6) zeta sqrt(slope m)`, tangential stiffness `8 G* a`.
-    fn hertz(couple: &Couple, overlap: f64, tension: Tension) -> Self {
+    fn hertz(couple: &Couple, overlap: f64) -> Self {
         let area = (couple.effective_radius * overlap).sqrt();
         let normal = 2.0 * couple.properties.effective_modulus * area / couple.effective_mass;
-        let normal_damping = 2.0 * (5.0_f64 / 6.0).sqrt() * couple.properties.zeta(tension) * normal.sqrt();
+        let normal_damping = 2.0 * (5.0_f64 / 6.0).sqrt() * couple.zeta * normal.sqrt();
         Self {
             normal,
             tangential: 8.0 * couple.properties.effective_shear_modulus * area / couple.effective_mass,
@@ -93,8 +95,9 @@ impl Oscillator {
 }
 
 impl<D: Dim> Dem<D> {
-    /// For every pair of materials that can touch, the lightest grains.
-    pub(super) fn stiffest_pairs(&self) -> Vec<Stiffest> {
+    /// For every pair of materials that can touch, the lightest grains. `with_times` works out contact times and Rayleigh
+    /// times, which takes far longer than the rest; else they are infinite.
+    pub(super) fn stiffest_pairs(&self, with_times: bool) -> Vec<Stiffest> {
         let count = self.materials.len();
         let mut lightest = vec![(f64::INFINITY, f64::INFINITY); count];
         for index in 0..self.len() {
@@ -116,23 +119,26 @@ impl<D: Dim> Dem<D> {
         let walls: Vec<usize> = self.walls.iter().map(|wall| wall.material.0 as usize).collect();
         let (present_speed, fall) = self.fastest_speeds();
         let stack = self.extent_along_gravity();
-        let present = self.deepest_overlap();
+        let is_hertz = self.options.contact == ContactModel::Hertz;
+        let present = if is_hertz { self.deepest_overlap() } else { 0.0 };
         let mut pairs = Vec::new();
         let mut add = |couple: Couple, names: &str, smaller: f64| {
             pairs.push(match self.options.contact {
-                ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names),
+                ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names, with_times),
                 ContactModel::Hertz => {
                     // Two grains may meet head-on.
                     let closing = if couple.on_wall { present_speed } else { 2.0 * present_speed };
-                    self.hertz(&couple, closing.max(fall), (stack, present * smaller), names)
+                    self.hertz(&couple, closing.max(fall), (stack, present * smaller), names, with_times)
                 }
             });
         };
         for (a, b, properties) in self.materials.pairs() {
             let ((m, r), (n, s)) = (lightest[a], lightest[b]);
+            let zeta = properties.zeta(self.options.tension);
             if m.is_finite() && n.is_finite() {
                 let couple = Couple {
                     properties,
+                    zeta,
                     effective_mass: m * n / (m + n),
                     effective_radius: r * s / (r + s),
                     mass: m.min(n),
@@ -148,6 +154,7 @@ impl<D: Dim> Dem<D> {
             if mass.is_finite() {
                 let couple = Couple {
                     properties,
+                    zeta,
                     effective_mass: mass,
                     effective_radius: radius,
                     mass,
@@ -159,12 +166,13 @@ impl<D: Dim> Dem<D> {
         pairs
     }
 
-    fn linear(&self, couple: &Couple, speed: f64, names: &str) -> Stiffest {
+    fn linear(&self, couple: &Couple, speed: f64, names: &str, with_times: bool) -> Stiffest {
         let (properties, tension) = (&couple.properties, self.options.tension);
+        let contact_time = || properties.contact_time(couple.effective_mass, tension);
         Stiffest {
-            oscillator: Oscillator::linear(properties, couple.effective_mass, tension),
+            oscillator: Oscillator::linear(properties, couple.effective_mass, couple.zeta),
             stiffness: properties.normal_stiffness,
-            contact_time: properties.contact_time(couple.effective_mass, tension),
+            contact_time: if with_times { contact_time() } else { f64::INFINITY },
             rayleigh_time: f64::INFINITY,
             speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
@@ -176,7 +184,14 @@ impl<D: Dim> Dem<D> {
     /// A Hertz contact is stiffest where it is deepest: at the hardest impact, or under the weight
     /// of a stack of grains as high as the sample, or as it is now. `reach` holds the height of
     /// the sample and the present overlap \[m\].
-    fn hertz(&self, couple: &Couple, speed: f64, reach: (f64, f64), names: &str) -> Stiffest {
+    fn hertz(
+        &self,
+        couple: &Couple,
+        speed: f64,
+        reach: (f64, f64),
+        names: &str,
+        with_times: bool,
+    ) -> Stiffest {
         let (properties, tension) = (&couple.properties, self.options.tension);
         let radius = couple.effective_radius;
         let impact = properties.hertz_impact(radius, couple.effective_mass, speed);
@@ -185,13 +200,14 @@ impl<D: Dim> Dem<D> {
         let weight = couple.mass * self.gravity.length() * grains;
         let pressed = (0.75 * weight / (properties.effective_modulus * radius.sqrt())).powf(2.0 / 3.0);
         let resting = pressed.max(reach.1).max(LEAST_OVERLAP * radius);
-        let half_period = PI / Oscillator::hertz(couple, resting, tension).normal.sqrt();
+        let half_period = PI / Oscillator::hertz(couple, resting).normal.sqrt();
+        let contact_time = || impact.duration(couple.zeta, tension).min(half_period);
         let overlap = deepest.max(resting);
         Stiffest {
-            oscillator: Oscillator::hertz(couple, overlap, tension),
-            stiffness: Oscillator::hertz(couple, overlap, tension).normal * couple.effective_mass,
-            contact_time: impact.duration(properties.zeta(tension), tension).min(half_period),
-            rayleigh_time: if D::TWISTS { self.rayleigh_time() } else { f64::INFINITY },
+            oscillator: Oscillator::hertz(couple, overlap),
+            stiffness: Oscillator::hertz(couple, overlap).normal * couple.effective_mass,
+            contact_time: if with_times { contact_time() } else { f64::INFINITY },
+            rayleigh_time: if D::TWISTS && with_times { self.rayleigh_time() } else { f64::INFINITY },
             speed,
             deepest,
             names: names.to_owned(),

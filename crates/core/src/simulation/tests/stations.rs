@@ -3,7 +3,7 @@
 use crate::exchange::{Coupling, CouplingError};
 use crate::field::{FieldRef, FieldSink, Location, Shown};
 use crate::snapshot::{Section, SnapshotError};
-use crate::solver::{Limits, Memory, Solver, StepError, StepLimit, StepRule};
+use crate::solver::{Limits, Memory, Solver, StepError, StepLimit};
 use std::sync::{Arc, Mutex};
 
 /// All calls, in order.
@@ -48,8 +48,7 @@ impl Solver for Station {
         (1, "value")
     }
     fn limits(&self, report: &mut Limits) {
-        let why = "of the test".to_owned();
-        report.steps.push(StepLimit { name: "pace", dt: self.limit, rule: StepRule::AtMost, why });
+        report.steps.push(StepLimit::at_most("pace", self.limit, "of the test"));
     }
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         self.log.add(format!("{} steps {steps} x {dt}", self.name));

@@ -51,7 +51,7 @@ impl Solver for Vessel {
     }
     fn limits(&self, report: &mut Limits) {
         if let Some((dt, rule)) = self.limit {
-            report.steps.push(StepLimit { name: "leak", dt, rule, why: "of the test".to_owned() });
+            report.steps.push(StepLimit { rule, ..StepLimit::at_most("leak", dt, "of the test") });
         }
     }
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
@@ -109,8 +109,7 @@ impl<A: Accepts<Level> + Provides<Level>, B: Accepts<Level> + Provides<Level>> C
         Ok(())
     }
     fn limits(&self, _: &A, _: &B, report: &mut Limits) {
-        let why = "of the pipe".to_owned();
-        report.steps.push(StepLimit { name: "pipe", dt: 0.5, rule: StepRule::AtMost, why });
+        report.steps.push(StepLimit::at_most("pipe", 0.5, "of the pipe"));
     }
     fn shown(&self) -> Vec<Shown> {
         vec![

@@ -3,7 +3,7 @@
 use crate::solver::check_step;
 use crate::{
     Blocks, FieldRef, FieldSink, Limits, Location, Memory, Section, Shown, ShownAs, SnapshotError, Solver,
-    StepError, StepLimit, StepRule,
+    StepError, StepLimit,
 };
 use glam::DVec2;
 
@@ -25,6 +25,8 @@ pub(super) enum Fault {
     InfiniteLimit,
     SameLimitTwice,
     LimitBelowTheStep,
+    HardLimitDiffers,
+    LimitChangesInSilence,
     ForgetsToShow,
     ShowsTwice,
     ShowsUnasked,
@@ -126,13 +128,24 @@ impl Solver for Toy {
             Some(Fault::ZeroLimit) => 0.0,
             Some(Fault::InfiniteLimit) => f64::INFINITY,
             Some(Fault::LimitBelowTheStep) => 1e-3,
+            Some(Fault::LimitChangesInSilence) => 2.0 + self.steps as f64,
             _ => 2.0,
         };
-        let limit = StepLimit { name: "period", dt, rule: StepRule::AtMost, why: "stability".to_owned() };
+        let limit = StepLimit::at_most("period", dt, "stability");
         report.steps.push(limit.clone());
         if self.has(Fault::SameLimitTwice) {
             report.steps.push(limit);
         }
+    }
+
+    fn hard_limits(&self, report: &mut Limits) {
+        if !self.has(Fault::HardLimitDiffers) {
+            self.limits(report);
+        }
+    }
+
+    fn hard_limits_may_change(&self) -> bool {
+        false
     }
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {

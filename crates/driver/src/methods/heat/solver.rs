@@ -3,7 +3,7 @@
 use granular_core::solver::check_step;
 use granular_core::{
     FieldRef, FieldSink, Limits, Location, Memory, Section, Shown, ShownAs, SnapshotError, Solver, StepError,
-    StepLimit, StepRule,
+    StepLimit,
 };
 use std::f64::consts::TAU;
 
@@ -52,7 +52,7 @@ impl Solver for Heat {
     fn limits(&self, report: &mut Limits) {
         let dt = 0.25 * self.spacing * self.spacing / self.diffusivity;
         let why = "heat crosses a cell".to_owned();
-        report.steps.push(StepLimit { name: "diffusion", dt, rule: StepRule::AtMost, why });
+        report.steps.push(StepLimit::at_most("diffusion", dt, why));
     }
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
