@@ -1,6 +1,7 @@
 //! A measured number over an axis of a sweep, as a figure.
 
 use crate::failure::Failure;
+use granular_io::csv_rows;
 use granular_io::figure::{Axis, Chart, Series, Style};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -272,21 +273,23 @@ fn series(label: String, mut groups: Vec<Group>, are_repetitions: bool) -> Serie
     Series::new(label, points, Style::ErrorBars(errors))
 }
 
-/// Curves of all reference files. A label may hold commas: the last two fields are the numbers.
+/// Curves of all reference files. A label may hold commas, also without quotes: the last two fields are the numbers.
 fn references(view: &View) -> Result<Vec<Curve>, Failure> {
     let mut curves = Vec::new();
     for path in &view.references {
         let content = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;
-        let rows = content.lines().enumerate().skip(1);
-        for (k, row) in rows.filter(|(_, row)| !row.trim().is_empty() && !row.starts_with('#')) {
-            let mut fields = row.rsplitn(3, ',');
-            let (y, x, label) = (fields.next(), fields.next(), fields.next());
-            let number = |field: Option<&str>| field?.trim().parse::<f64>().ok();
-            let (Some(y), Some(x), Some(label)) = (number(y), number(x), label) else {
-                let reason = format!("`{row}`: a label, x and y are expected, with commas between");
-                return Err(Failure::io(format!("{}:{}", path.display(), k + 1), reason));
-            };
-            entry(&mut curves, label.trim().trim_matches('"').to_owned()).push([x, y]);
+        for row in csv_rows(&content).skip(1) {
+            let fields: Vec<&str> = row.fields().collect();
+            let point = fields.split_last_chunk().and_then(|(label, [x, y])| {
+                let point = [x.parse::<f64>().ok()?, y.parse().ok()?];
+                (!label.is_empty()).then(|| (label.join(", "), point))
+            });
+            let (label, point) = point.ok_or_else(|| {
+                let found = fields.join(",");
+                let reason = format!("`{found}`: a label, x and y are expected, with commas between");
+                Failure::io(format!("{}:{}", path.display(), row.line()), reason)
+            })?;
+            entry(&mut curves, label).push(point);
         }
     }
     Ok(curves)
