@@ -135,7 +135,7 @@ pub struct Wall<D: Dim> {
     pub shape: Shape<D>,
     /// Material.
     pub material: MaterialId,
-    /// Whether it is out of the way: an open gate.
+    /// Whether it is open, as a gate may be: grains then pass through it.
     pub open: bool,
     /// How it moves; the shape is where it begins.
     pub motion: Option<WallMotion<D>>,
