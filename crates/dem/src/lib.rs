@@ -91,3 +91,15 @@ pub use walls::{Falling, Gates, Wall};
 pub type Dem2 = Dem<granular_core::D2>;
 /// Spheres in space.
 pub type Dem3 = Dem<granular_core::D3>;
+
+// Vectors and the solver contract, so that this crate alone is enough to use its solver.
+pub use granular_core;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+/// The snippet of the README of the workspace.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct WorkspaceReadme;

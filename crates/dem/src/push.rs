@@ -78,7 +78,7 @@ impl<D: Dim> Dem<D> {
         self.blocks.sum(|i| self.grains.mass[i])
     }
 
-    /// Gives all grains a velocity beside the one they have; the ledger counts the energy. Where there are no grains nothing
+    /// Adds a velocity to that of every grain; the ledger counts the energy. Where there are no grains nothing
     /// happens.
     ///
     /// # Errors

@@ -22,8 +22,8 @@ pub struct DemSpec {
     pub lever_arm: LeverArmSpec,
     /// Steps in the shortest contact time, 1 or more; this sets the step where `time_step` does not.
     pub steps_per_contact: f64,
-    /// How far beyond contact neighbour lists reach at most, over the mean diameter; those of slow grains are
-    /// shorter. It changes the speed, never the forces.
+    /// Largest distance to which neighbour lists reach beyond contact, over the mean diameter; those of slow grains
+    /// reach less far. It affects the speed, never the results.
     pub skin: f64,
     /// The step; by default it follows from `steps_per_contact`.
     pub time_step: Option<Time>,
@@ -103,7 +103,7 @@ impl DemSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
-    /// Density of the grains; a material of walls needs none.
+    /// Density of the grains; materials of walls need none.
     #[serde(default = "default_density")]
     pub density: Density,
     /// Normal stiffness between two bodies of this material, for linear contacts. Between two
@@ -126,19 +126,19 @@ pub struct MaterialSpec {
     /// follows from Poisson's ratio, `2 (1 - nu)/(2 - nu)`, where the normal stiffness does.
     #[serde(default)]
     pub stiffness_ratio: Option<f64>,
-    /// Coefficient of restitution of a normal impact, above 0 and at most 1. Between two
-    /// materials the lower one holds.
+    /// Coefficient of restitution of a normal impact, above 0 and at most 1. Between two materials the lower value
+    /// applies.
     pub restitution: f64,
     /// Tangential over normal damping coefficient, 0 or more.
     #[serde(default = "default_damping_ratio")]
     pub damping_ratio: f64,
-    /// Coefficient of Coulomb friction, 0 or more. Between two materials the lower one holds.
+    /// Coefficient of Coulomb friction, 0 or more. Between two materials the lower value applies.
     pub friction: f64,
-    /// Coefficient of rolling resistance, 0 or more. Between two materials the lower one holds.
+    /// Coefficient of rolling resistance, 0 or more. Between two materials the lower value applies.
     #[serde(default)]
     pub rolling_friction: f64,
     /// Coefficient of resistance against twisting, turning about the normal of a contact, 0 or
-    /// more; for spheres. Between two materials the lower one holds.
+    /// more; for spheres. Between two materials the lower value applies.
     #[serde(default)]
     pub twisting_friction: f64,
 }

@@ -26,6 +26,7 @@ use crate::failure::Failure;
 use crate::methods::dem::sheared::{self, Flow, Stiffness};
 use crate::parallel;
 use crate::scene::{Dimension, Scene};
+use crate::statistics::Line;
 use granular_core::{D2, D3, Dim};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -136,8 +137,8 @@ fn summary(scene: &Scene, plan: &Plan, flows: &[(Task, Flow)], stiffness: &[Stif
         peak_friction: of_peaks(|flow| flow.peak_friction),
         peak_dilation: of_peaks(|flow| flow.peak_dilation.atan().to_degrees()),
         linear: Linear {
-            static_friction: per_seed(&|points| fit::line(points).0, &friction, &all),
-            slope: per_seed(&|points| fit::line(points).1, &friction, &all),
+            static_friction: per_seed(&|points| Line::through(points).intercept, &friction, &all),
+            slope: per_seed(&|points| Line::through(points).slope, &friction, &all),
         },
         jop: Jop {
             static_friction: per_seed(&|points| fit::saturating(points)[0], &friction, &all),
@@ -145,8 +146,8 @@ fn summary(scene: &Scene, plan: &Plan, flows: &[(Task, Flow)], stiffness: &[Stif
             inertial_number: per_seed(&|points| fit::saturating(points)[2], &friction, &all),
         },
         solid_fraction: Linear {
-            static_friction: per_seed(&|points| fit::line(points).0, &solid, &all),
-            slope: per_seed(&|points| fit::line(points).1, &solid, &all),
+            static_friction: per_seed(&|points| Line::through(points).intercept, &solid, &all),
+            slope: per_seed(&|points| Line::through(points).slope, &solid, &all),
         },
         young_modulus: of_stiffness(|one| one.young),
         poisson_ratio: of_stiffness(|one| one.poisson),

@@ -60,6 +60,16 @@ impl Failure {
         }
     }
 
+    /// The failure as text, as it is displayed, but in colour for a terminal.
+    pub fn in_colour(&self) -> String {
+        match self {
+            Self::Scene(problems) => {
+                problems.iter().map(SceneProblem::in_colour).collect::<Vec<_>>().join("\n\n")
+            }
+            other => other.to_string(),
+        }
+    }
+
     /// A failure of the file system.
     pub fn io(place: impl fmt::Display, reason: impl fmt::Display) -> Self {
         Self::Io(format!("{place}: {reason}"))

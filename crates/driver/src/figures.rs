@@ -219,7 +219,7 @@ impl Run<'_> {
 
     fn record(&self, name: &str) -> Result<&StageRecord, Failure> {
         let found = self.records.iter().find(|record| record.name == name);
-        let reason = || format!("stage `{name}` was not run yet, so there is no figure of it");
+        let reason = || format!("stage `{name}` was not run yet, so it has no figure");
         found.ok_or_else(|| Failure::Io(reason()))
     }
 

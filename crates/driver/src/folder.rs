@@ -73,7 +73,7 @@ impl RunFolder {
         if path.join(RUN_FILE).is_file() && !path.join(SCENE_FILE).is_file() && is_own_run(path) {
             let force = if is_unborn(path) { "" } else { " and --force" };
             let reason = format!(
-                "holds a run that was stopped before it began, so there is nothing to go on with; start it again with \
+                "holds a run that was stopped before it began, so there is nothing to resume; start it again with \
                  `granular run`{force}"
             );
             return Err(Failure::io(path.display(), reason));
@@ -84,7 +84,7 @@ impl RunFolder {
             (true, []) => Ok(Self { path: path.to_path_buf(), _lock: None }),
             (true, _) => Err(Failure::io(
                 path.display(),
-                format!("is no run folder: it lacks {}", lacks.join(" and ")),
+                format!("is not a run folder: it lacks {}", lacks.join(" and ")),
             )),
             (false, _) if path.exists() => {
                 Err(Failure::io(path.display(), "is a file; the folder of a run is expected"))
@@ -192,7 +192,7 @@ fn refuse_occupied(path: &Path, force: bool) -> Result<(), Failure> {
         return Err(Failure::io(path.display(), reason));
     }
     if !is_own_run(path) {
-        let reason = "is not empty, and its run.json is none that this program wrote, so it is left alone, also with \
+        let reason = "is not empty, and its run.json was not written by this program, so it is left alone, also with \
                       --force; choose another folder with --out";
         return Err(Failure::io(path.display(), reason));
     }

@@ -31,7 +31,7 @@ pub mod sweep;
 
 pub use effort::Effort;
 
-/// Scenes to start from: name and text. The first line of each is a comment that says what it is.
+/// Scenes to start from: name and text. The first line of each is a comment that describes it.
 pub const TEMPLATES: &[(&str, &str)] = &[
     ("cavity", include_str!("../templates/cavity.ron")),
     ("channel-flow", include_str!("../templates/channel-flow.ron")),

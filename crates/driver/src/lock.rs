@@ -1,7 +1,8 @@
 //! Who works on a run or writes a table: one process at a time.
 
 use crate::failure::Failure;
-use std::fs::File;
+use std::fs::{File, TryLockError};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Held as long as something is worked on. The system lets go of it when the process ends, however
@@ -14,16 +15,18 @@ pub(crate) struct Lock {
 impl Lock {
     /// Takes the lock of this empty file, which is made if it is not there; `None` when another process holds it.
     ///
-    /// Where the system or the file system knows no locks, everybody gets one.
+    /// Where the system or the file system has no locks, everybody gets one.
     pub(crate) fn take(path: &Path) -> Result<Option<Self>, Failure> {
         let file = file(path)?;
-        Ok(system::is_free(&file).then_some(Self { _file: file }))
+        let is_held = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        Ok((!is_held).then_some(Self { _file: file }))
     }
 
     /// Takes it as soon as no other process holds it.
     pub(crate) fn wait(path: &Path) -> Result<Self, Failure> {
         let file = file(path)?;
-        system::wait(&file);
+        // A signal may end the wait. Any other failure means a file system without locks.
+        while file.lock().is_err_and(|error| error.kind() == ErrorKind::Interrupted) {}
         Ok(Self { _file: file })
     }
 }
@@ -35,33 +38,7 @@ fn file(path: &Path) -> Result<File, Failure> {
     File::create(path).map_err(|error| Failure::io(path.display(), error))
 }
 
-#[cfg(unix)]
-mod system {
-    use rustix::fs::{FlockOperation, flock};
-    use std::fs::File;
-
-    pub(super) fn is_free(file: &File) -> bool {
-        flock(file, FlockOperation::NonBlockingLockExclusive) != Err(rustix::io::Errno::WOULDBLOCK)
-    }
-
-    pub(super) fn wait(file: &File) {
-        // A signal may end the wait. Any other failure is a file system without locks.
-        while flock(file, FlockOperation::LockExclusive) == Err(rustix::io::Errno::INTR) {}
-    }
-}
-
-#[cfg(not(unix))]
-mod system {
-    use std::fs::File;
-
-    pub(super) fn is_free(_: &File) -> bool {
-        true
-    }
-
-    pub(super) fn wait(_: &File) {}
-}
-
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -74,6 +51,16 @@ mod tests {
         assert!(Lock::take(&path).unwrap().is_none());
         // Another file is another lock.
         assert!(Lock::take(&folder.join("some/other")).unwrap().is_some());
+        // One that waits gets it when it is let go.
+        let waiting = std::thread::spawn({
+            let path = path.clone();
+            move || Lock::wait(&path).unwrap()
+        });
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        assert!(!waiting.is_finished());
+        drop(held);
+        let held = waiting.join().unwrap();
+        assert!(Lock::take(&path).unwrap().is_none());
         drop(held);
         assert!(Lock::take(&path).unwrap().is_some());
         std::fs::remove_dir_all(folder).unwrap();

@@ -47,7 +47,7 @@ pub(crate) fn most(bytes: f64) -> f64 {
 pub(crate) fn readable(path: &Path, bytes: f64) -> Result<(), String> {
     let data = fs::metadata(path).map_err(|error| error.to_string())?;
     if !data.is_file() {
-        return Err("it is no file".to_owned());
+        return Err("it is not a file".to_owned());
     }
     let length = data.len() as f64;
     match room_for(length, bytes) {

@@ -1,16 +1,22 @@
-//! Progress of a run on standard error: one line that is rewritten on a terminal, plain lines
-//! every ten seconds otherwise.
+//! Progress on standard error: bars on a terminal, plain lines every ten seconds otherwise.
 
 use crate::methods::member::Member;
 use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
-use std::io::{IsTerminal, Write};
-use std::sync::Arc;
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
+use std::io::Write;
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
-/// Writes a line to standard error. What is said there is a courtesy: that nobody listens any more
+/// All bars of this process; they are hidden when standard error is not a terminal.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
+/// Positions of the bar of a stage.
+const POSITIONS: u64 = 1000;
+
+/// Writes a line to standard error, above all bars. What is said there is a courtesy: that nobody listens any more
 /// does not stop a run, as `eprintln!` would.
 pub(crate) fn say(line: std::fmt::Arguments<'_>) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ =
+        if BARS.is_hidden() { writeln!(std::io::stderr(), "{line}") } else { BARS.println(line.to_string()) };
 }
 
 /// What the progress line says of the stage under way.
@@ -27,52 +33,85 @@ pub(crate) struct StageLine {
 struct Progress {
     stage: StageLine,
     members: Vec<Arc<dyn Member>>,
-    terminal: bool,
+    bar: Option<ProgressBar>,
     last: (Instant, u64, f64),
-    shown: bool,
 }
 
 /// The progress of one stage.
 pub(crate) fn scheduled(stage: StageLine, members: Vec<Arc<dyn Member>>) -> Scheduled {
-    let terminal = std::io::stderr().is_terminal();
-    let interval = if terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
+    let is_terminal = !BARS.is_hidden();
+    let interval = if is_terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
     let last = (Instant::now(), stage.from.0, stage.from.1);
-    let progress = Progress { stage, members, terminal, last, shown: false };
-    Scheduled::new("progress", Every::Wall(interval), Box::new(progress))
+    let bar = is_terminal.then(|| BARS.add(stage_bar(&stage.name, ProgressDrawTarget::stderr())));
+    Scheduled::new("progress", Every::Wall(interval), Box::new(Progress { stage, members, bar, last }))
 }
 
-impl Observer for Progress {
-    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+fn stage_bar(name: &str, target: ProgressDrawTarget) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(POSITIONS), target).with_finish(ProgressFinish::AndClear);
+    bar.with_style(style("{prefix} {bar:20} {wide_msg}")).with_prefix(name.to_owned())
+}
+
+/// How many runs of a sweep are over, with an estimate of the time left; drawn on a terminal only.
+pub(crate) fn runs(count: usize) -> ProgressBar {
+    let bar = BARS.add(ProgressBar::new(count as u64).with_finish(ProgressFinish::AndClear));
+    bar.set_style(style("{pos} of {len} runs {bar:20} {elapsed}, about {eta} left"));
+    bar
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template)
+        .expect("the template is written in this file")
+        .progress_chars("=> ")
+}
+
+impl Progress {
+    /// Time, step, rate and worst number, and how long it takes at most from here.
+    fn told(&mut self, simulation: &Simulation) -> String {
         let clock = simulation.clock();
         let (size, item) = simulation.solver().size();
         let now = (Instant::now(), clock.step(), clock.time());
         let (since, step, time) = std::mem::replace(&mut self.last, now);
-        self.shown = true;
         let wall = now.0.duration_since(since).as_secs_f64();
         let rate = (clock.step() - step) as f64 / wall.max(1e-9);
         let pace = (clock.time() - time) / wall.max(1e-9);
         let worst = self.members.iter().map(|member| member.progress(simulation));
         let worst = worst.collect::<Vec<_>>().join("  ");
         let left = (self.stage.end - clock.time()).max(0.0) / pace;
-        let line = format!(
-            "{}  {:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  {worst}  at most {} left",
-            self.stage.name,
+        format!(
+            "{:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  {worst}  at most {} left",
             clock.time(),
             self.stage.end,
             clock.step(),
             clock.dt(),
             rate * size as f64,
             duration(left),
-        );
-        let mut out = std::io::stderr().lock();
-        let _ = if self.terminal { write!(out, "\r\x1b[K{line}") } else { writeln!(out, "{line}") };
-        let _ = out.flush();
+        )
+    }
+
+    /// Share of the stage, or of what was left of it, that is over.
+    fn share(&self, time: f64) -> f64 {
+        let (from, end) = (self.stage.from.1, self.stage.end);
+        if end > from { ((time - from) / (end - from)).clamp(0.0, 1.0) } else { 1.0 }
+    }
+}
+
+impl Observer for Progress {
+    fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
+        let told = self.told(simulation);
+        let share = self.share(simulation.clock().time());
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(told);
+                bar.set_position((share * POSITIONS as f64) as u64);
+            }
+            None => say(format_args!("{}  {told}", self.stage.name)),
+        }
         Ok(Flow::Continue)
     }
 
     fn finish(&mut self, _: &Simulation) -> Result<(), ObserverError> {
-        if self.terminal && self.shown {
-            let _ = write!(std::io::stderr(), "\r\x1b[K");
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
         }
         Ok(())
     }
@@ -94,7 +133,30 @@ pub(crate) fn duration(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::duration;
+    use super::*;
+    use indicatif::{InMemoryTerm, TermLike};
+
+    #[test]
+    fn the_bar_of_a_stage_fits_on_one_line() {
+        let terminal = InMemoryTerm::new(10, 60);
+        let target = ProgressDrawTarget::term_like(Box::new(terminal.clone()));
+        let stage = StageLine { name: "collapse (2/2)".to_owned(), end: 0.5, from: (100, 0.1) };
+        let bar = stage_bar(&stage.name, target);
+        let progress =
+            Progress { stage, members: Vec::new(), bar: Some(bar), last: (Instant::now(), 100, 0.1) };
+        assert_eq!(
+            [0.1, 0.3, 0.5, 0.7].map(|time| progress.share(time)),
+            [0.0, 0.49999999999999994, 1.0, 1.0]
+        );
+        let bar = progress.bar.unwrap();
+        bar.set_message("0.3000/0.5000 s  step 2000  dt 1.0e-4 s  at most 3 s left");
+        bar.set_position(500);
+        bar.tick();
+        assert_eq!(terminal.contents(), "collapse (2/2) ==========>          0.3000/0.5000 s  step 20");
+        assert_eq!(terminal.width(), 60);
+        bar.finish_and_clear();
+        assert_eq!(terminal.contents(), "");
+    }
 
     #[test]
     fn durations_read_well() {

@@ -240,7 +240,7 @@ impl<'a> Session<'a> {
                 Failure::Io(reason) => {
                     let path = self.folder.path().display();
                     Failure::Io(format!(
-                        "{reason}\n  = help: when that is put right, go on with `granular resume {path}`"
+                        "{reason}\n  = help: when that is fixed, continue with `granular resume {path}`"
                     ))
                 }
                 other => other,
@@ -412,7 +412,7 @@ impl<'a> Session<'a> {
     }
 
     fn interrupted(&self) -> Failure {
-        let hint = format!("go on with `granular resume {}`", self.folder.path().display());
+        let hint = format!("continue with `granular resume {}`", self.folder.path().display());
         Failure::Interrupted { signal: self.interrupt.signal.load(Ordering::Relaxed), hint }
     }
 }

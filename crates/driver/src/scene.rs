@@ -45,7 +45,7 @@ pub struct Scene {
     /// Materials of grains and walls, by names of your choice.
     #[serde(default)]
     pub materials: BTreeMap<String, MaterialSpec>,
-    /// Contacts between two materials that are given instead of mixed from both; none by default.
+    /// Contacts between two materials whose properties are given instead of mixed from both; none by default.
     #[serde(default)]
     pub pairs: Vec<PairSpec>,
     /// The grains, described apart from the method.
@@ -60,13 +60,13 @@ pub struct Scene {
     /// Walls of grains; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
-    /// Boxes in which grains come in during the run; none by default.
+    /// Boxes in which grains are inserted during the run; none by default.
     #[serde(default)]
     pub inlets: Vec<InletSpec>,
-    /// Where grains are taken out during the run; nowhere by default.
+    /// Where grains are removed during the run; nowhere by default.
     #[serde(default)]
     pub outlets: Vec<OutletSpec>,
-    /// What happens, one stage after the other.
+    /// The stages of the run, in order.
     pub stages: Vec<Stage>,
     /// The methods, under names of your choice, such as `{ "grains": Dem(()) }` or
     /// `{ "water": Lbm((spacing: "1 mm")) }`. Several must be joined by `couplings`.
@@ -80,8 +80,8 @@ pub struct Scene {
     /// Figures made at the end of the run.
     #[serde(default)]
     pub figures: Vec<FigureSpec>,
-    /// Time on the wall clock between snapshots, from which `granular resume` goes on; one is also
-    /// taken at the start of every stage and on interruption.
+    /// Wall-clock time between snapshots, from which `granular resume` continues; one is also taken at the start of
+    /// every stage and on interruption.
     #[serde(default = "default_snapshot_interval")]
     pub snapshot_every: Time,
     /// Folder of the scene file, from which paths of files to read count.
@@ -108,7 +108,7 @@ pub enum Dimension {
 pub enum Sample {
     /// A column that stands on y = 0 (z = 0 in space) with its left side at x = 0.
     Column {
-        /// How large the column is: by its number of grains or by its width.
+        /// Size of the column, as a number of grains or a width.
         extent: Extent,
         /// Height over width of the packed column; `Loose` stands up to twice as high before it settles.
         aspect_ratio: f64,
@@ -127,11 +127,11 @@ pub enum Sample {
     },
     /// A cylinder, or half of one, that stands on z = 0 about the axis x = y = 0; in space only.
     Cylinder {
-        /// How large it is: by its number of grains or by its width, the diameter.
+        /// Size of the cylinder, as a number of grains or a width, which is its diameter.
         extent: Extent,
-        /// Height over radius before anything moves.
+        /// Initial height over radius.
         aspect_ratio: f64,
-        /// Whether it is the half with y above 0.
+        /// Whether only its half with y above 0 is made.
         #[serde(default)]
         half: bool,
         /// Sizes of the grains.
@@ -144,11 +144,11 @@ pub enum Sample {
         #[serde(default = "default_seed")]
         seed: u64,
     },
-    /// Grains scattered in the periodic cell of the scene, which becomes a cube or square, to be compressed by a stage.
+    /// Grains scattered in the periodic cell of the scene, which is made a square or cube, to be compressed by a stage.
     Cell {
         /// Number of grains.
         grains: usize,
-        /// Area or volume of the grains over that of the cell before anything moves; grains must not overlap.
+        /// Initial area or volume of the grains over that of the cell; grains must not overlap.
         solid_fraction: f64,
         /// Sizes of the grains.
         grading: GradingSpec,
@@ -164,14 +164,14 @@ pub enum Sample {
     File {
         /// The file; its path counts from the folder of the scene.
         path: String,
-        /// Only grains wholly inside all these regions are taken; all by default. A Box that the shift brings
-        /// to the origin makes a column, beside which a Gate can stand.
+        /// Only grains wholly inside all these regions are taken; all by default. If the shift moves a Box to the
+        /// origin, the sample is a column, which may have a Gate.
         #[serde(default)]
         cut: Vec<RegionSpec>,
-        /// How far the grains are shifted after the cut, one length per axis; not at all by default.
+        /// Shift of the grains after the cut, one length per axis; none by default.
         #[serde(default)]
         shift: Vec<Length>,
-        /// Whether the grains move as they did; at rest by default.
+        /// Whether the grains keep the motion that was saved; they are at rest by default.
         #[serde(default)]
         moving: bool,
     },
@@ -181,7 +181,7 @@ fn default_seed() -> u64 {
     1
 }
 
-/// How large a sample is.
+/// Size of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum Extent {
     /// By its number of grains; the width follows.
@@ -247,14 +247,16 @@ pub enum WallSpec {
         /// Name of the material.
         material: String,
     },
-    /// The plane right of a column, or the tube around a cylinder, called `gate`, which is out of the way from a stage on.
+    /// The plane right of a column, or the tube around a cylinder, called `gate`, which is removed at the start of a
+    /// stage.
     Gate {
         /// Name of the material.
         material: String,
         /// Name of the stage at whose start the gate opens.
         opens: String,
     },
-    /// Planes before and behind a column in space, called `front` and `back`; beside half a cylinder its flat face, `front`.
+    /// Planes in front of and behind a column in space, called `front` and `back`; for half a cylinder the plane of its
+    /// flat face, `front`.
     Sides {
         /// Name of the material.
         material: String,
@@ -269,7 +271,7 @@ pub enum WallSpec {
         normal: Vec<f64>,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
@@ -286,7 +288,7 @@ pub enum WallSpec {
         to: Vec<Length>,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
@@ -303,14 +305,15 @@ pub enum WallSpec {
         high: Vec<Length>,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
         #[serde(default)]
         moves: Option<MotionSpec>,
     },
-    /// The curved surface of a cylinder, open at both ends, with grains on both sides; in the plane two parallel segments.
+    /// The curved surface of a cylinder, open at both ends, with grains on both sides; in the plane two parallel
+    /// segments.
     Tube {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
@@ -322,7 +325,7 @@ pub enum WallSpec {
         radius: Length,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
@@ -339,14 +342,14 @@ pub enum WallSpec {
         radius: Length,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
         #[serde(default)]
         moves: Option<MotionSpec>,
     },
-    /// Segments from point to point, with grains on both sides; one wall, whose joints are not felt.
+    /// Segments from point to point, with grains on both sides; one wall, with smooth contact across its joints.
     Chain {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
@@ -357,15 +360,15 @@ pub enum WallSpec {
         closed: bool,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
         #[serde(default)]
         moves: Option<MotionSpec>,
     },
-    /// Triangles of an STL file, text or binary, with grains on both sides; one wall, whose edges are not felt where it
-    /// is flat. In space only.
+    /// Triangles of an STL file, text or binary, with grains on both sides; one wall, with smooth contact across edges
+    /// where it is flat. In space only.
     Mesh {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
@@ -379,14 +382,14 @@ pub enum WallSpec {
         at: Vec<Length>,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
         #[serde(default)]
         moves: Option<MotionSpec>,
     },
-    /// Grains that are held, on a lattice in a box: a rough wall. Flat along an axis, the box is a row or a layer.
+    /// Fixed grains on a lattice in a box: a rough wall. A box that is flat along an axis gives a row or a layer.
     HeldGrains {
         /// Name, for probes such as `force_on_<name>_x` and for changes that open it.
         name: String,
@@ -398,7 +401,7 @@ pub enum WallSpec {
         diameter: Length,
         /// Distance between their centres along each axis.
         spacing: Length,
-        /// Greatest distance by which they are out of place along each axis; none by default.
+        /// Largest random displacement along each axis; none by default.
         #[serde(default)]
         scatter: Length,
         /// Random seed of the scatter.
@@ -406,7 +409,7 @@ pub enum WallSpec {
         seed: u64,
         /// Name of the material.
         material: String,
-        /// Name of the stage at whose start it goes out of the way; it stays by default.
+        /// Name of the stage at whose start it is removed; it stays by default.
         #[serde(default)]
         opens: Option<String>,
         /// How it moves; at rest by default.
@@ -434,7 +437,7 @@ fn metre() -> Length {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// Name, which no other stage has.
+    /// Name; each stage has its own.
     pub name: String,
     /// When it ends.
     pub end: End,
@@ -466,7 +469,7 @@ pub enum End {
         /// of it.
         within: Time,
     },
-    /// When the bulk of the grains is packed so densely.
+    /// When the bulk of the grains has reached a density.
     Packed {
         /// Solid fraction of the bulk, above 0 and below 1.
         solid_fraction: f64,
@@ -498,7 +501,7 @@ impl End {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Change {
-    /// Friction of one material. Pairs whose friction is given keep it.
+    /// The friction of a material. Pairs whose friction is given keep it.
     Friction {
         /// Name of the material.
         material: String,
@@ -507,14 +510,14 @@ pub enum Change {
     },
     /// Gravity, one component per axis.
     Gravity(Vec<Acceleration>),
-    /// The velocity of a face of the fluid, the same all over it: of a wall along itself, or of an Inflow.
+    /// The velocity of a face of the fluid, uniform over the face: of a wall along itself, or of an Inflow.
     FaceVelocity {
         /// Which one: left, right, bottom or top; in space also front or back.
         face: String,
         /// New velocity, one component per axis.
         velocity: Vec<Velocity>,
     },
-    /// How the surface of an obstacle without a path turns.
+    /// The angular velocity of the surface of an obstacle without a path.
     ObstacleSpin {
         /// Name of the obstacle.
         obstacle: String,
@@ -523,8 +526,9 @@ pub enum Change {
     },
     /// All velocities and spins become zero.
     StopMotion,
-    /// All grains get a velocity beside the one they have, at once, as from a blow or a quake. One of `speed`, `energy` and
-    /// `energy_per_grain` says how strong it is. Energies and momentum given are in `run.json`, under its stage.
+    /// A sudden change of velocity of all grains, as by a blow or an earthquake, added to the velocity that they have.
+    /// Its strength is given by one of `speed`, `energy` and `energy_per_grain`. The energy and momentum added are in
+    /// `run.json`, under the stage.
     Push {
         /// Where to, one number per axis, of any length; along x by default.
         #[serde(default)]
@@ -542,8 +546,8 @@ pub enum Change {
         #[serde(default)]
         profile: PushProfileSpec,
     },
-    /// Shaking, during this stage only: an acceleration beside gravity that oscillates, as on a table that is shaken
-    /// and seen from it.
+    /// Shaking, during this stage only: an oscillating acceleration in addition to gravity, as seen from a shaking
+    /// table.
     Shake {
         /// Largest acceleration, one component per axis.
         acceleration: Vec<Acceleration>,
@@ -554,7 +558,7 @@ pub enum Change {
         /// Duration of a pass; passes follow each other.
         pass: Time,
     },
-    /// The wall of this name, such as `gate`, goes out of the way.
+    /// The wall of this name, such as `gate`, is removed.
     Open(String),
     /// The wall of this name comes back.
     Close(String),

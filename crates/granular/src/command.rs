@@ -19,7 +19,7 @@ use granular_driver::scene_file::SceneText;
 use granular_driver::{check, folder, machine, parts, run};
 use serde_json::{Map, Value, json};
 use signal_hook::iterator::Signals;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -42,13 +42,13 @@ pub(crate) struct Command {
 
 #[derive(Args, Debug)]
 struct Common {
-    /// Threads; all cores by default. The results are the same bits for any number.
+    /// Number of threads; all cores by default. The results have the same bits for any number.
     #[arg(long, global = true, value_name = "N")]
     threads: Option<usize>,
     /// Print one JSON value on standard output.
     #[arg(long, global = true)]
     json: bool,
-    /// Say nothing but results and errors.
+    /// Print only results and errors.
     #[arg(short, long, global = true)]
     quiet: bool,
 }
@@ -64,14 +64,14 @@ enum Verb {
         #[arg(long)]
         list: bool,
     },
-    /// Check a scene: sample, limits, bounds, memory, run time, and what is left out. Runs nothing.
+    /// Check a scene without running it: sample, limits, bounds, memory, run time, and what is left out.
     Check {
         /// Scene file, or - for standard input.
         scene: PathBuf,
         #[command(flatten)]
         edits: Edits,
-        /// Draw the scene before its first step: grains, walls, where grains come and go, obstacles of a fluid. Writes
-        /// the file as SVG and beside it the same as PNG.
+        /// Draw the scene before its first step: grains, walls, inlets and outlets, obstacles of a fluid. Writes an SVG
+        /// file, and a PNG file of the same name.
         #[arg(long, value_name = "FILE")]
         draw: Option<PathBuf>,
     },
@@ -84,25 +84,25 @@ enum Verb {
         /// Run folder; `runs/<name of the scene>` by default.
         #[arg(short, long, value_name = "FOLDER")]
         out: Option<PathBuf>,
-        /// Replace the run that the folder holds.
+        /// Replace the run in the folder.
         #[arg(long)]
         force: bool,
     },
-    /// Take an interrupted run up again, to the same bits as if it had not been interrupted.
+    /// Resume an interrupted run; the results have the same bits as without the interruption.
     Resume {
         /// Run folder.
         folder: PathBuf,
     },
-    /// Run a grid of scenes and collect a table; the same command goes on where it was.
+    /// Run a grid of scenes and collect a table; the same command continues an interrupted sweep.
     Sweep(sweep::Sweep),
-    /// Draw the figures of a run again, or a figure of a sweep.
+    /// Redraw the figures of a run, or draw a figure of a sweep or a calibrated material.
     Plot(plot::Plot),
-    /// Lay runs side by side: series, profiles and grids of run folders, and tables from elsewhere, in one figure and one table.
+    /// Compare runs: series, profiles and grids of run folders, and tables from elsewhere, in one figure and one table.
     Compare(compare::Compare),
-    /// Compare the program with known answers; exit code 1 when a required one is missed.
+    /// Compare results with known answers; exit code 1 if a required one is missed.
     #[cfg(feature = "studies")]
     Validate(validate::Validate),
-    /// Find what a continuum of the grains of a scene is like.
+    /// Measure the parameters of a continuum made of the grains of a scene.
     #[cfg(feature = "dem")]
     #[command(subcommand)]
     Calibrate(calibrate::Calibrate),
@@ -110,7 +110,7 @@ enum Verb {
     #[cfg(feature = "studies")]
     #[command(subcommand)]
     Bench(bench::Bench),
-    /// Tell about this program, a run folder, or all that a scene can show.
+    /// Describe this program, a run folder, or everything that a scene can show.
     Info {
         /// Run folder or scene file.
         path: Option<PathBuf>,
@@ -153,7 +153,9 @@ fn tell(failure: &Failure, json: bool) {
         print(&(pretty(&failure_json(failure)) + "\n"));
     }
     // Nobody may be listening; the exit code says it too.
-    let _ = writeln!(std::io::stderr(), "{failure}");
+    let in_colour = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let text = if in_colour { failure.in_colour() } else { failure.to_string() };
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// Threads to use; 0 for all cores. More than make sense would wait for one another for seconds.
@@ -279,7 +281,8 @@ fn interrupt(common: &Common, out: &Path) -> Result<Interrupt, Failure> {
     Ok(interrupt)
 }
 
-/// Ends the process after a signal as soon as no run has taken steps for a while, in which it would have ended by itself.
+/// Ends the process after a signal as soon as no run has taken steps for a while, in which it would have ended by
+/// itself.
 fn end_when_idle(interrupt: &Interrupt, signal: i32, out: &Path, json: bool) {
     let mut idle = Instant::now();
     while idle.elapsed() < IDLE {
@@ -290,7 +293,7 @@ fn end_when_idle(interrupt: &Interrupt, signal: i32, out: &Path, json: bool) {
     }
     let signal = signal as usize;
     let failure = if folder::RunFolder::open(out).is_ok() {
-        let hint = format!("go on with `granular resume {}`", out.display());
+        let hint = format!("continue with `granular resume {}`", out.display());
         Failure::Interrupted { signal, hint }
     } else {
         Failure::NotBegun { signal }

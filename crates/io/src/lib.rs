@@ -77,7 +77,7 @@ pub use figure::Figure;
 pub use frame::{Field, Frame, Number, Values};
 pub use snapshot_file::{Latest, SnapshotStore, hash_hex, read_snapshot, state_hash, write_snapshot};
 pub use stl::read_stl;
-pub use table::{Table, TableWriter, can_be_a_column, csv_row, read_table};
+pub use table::{CsvRow, Table, TableWriter, can_be_a_column, csv_row, csv_rows, read_table};
 pub use vtk::{Collection, write_fields, write_links_vtp, write_vti, write_vtp};
 #[cfg(feature = "hdf5")]
 pub use vtkhdf::{VtkHdfGrid, VtkHdfPoints};

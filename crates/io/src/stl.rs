@@ -74,7 +74,7 @@ fn triangles_of_text(bytes: &[u8]) -> io::Result<Vec<[[f64; 3]; 3]>> {
     }
     let (triangles, rest) = corners.as_chunks::<3>();
     if !rest.is_empty() {
-        return Err(invalid(format!("{} vertices are no whole number of triangles", corners.len())));
+        return Err(invalid(format!("{} vertices are not a whole number of triangles", corners.len())));
     }
     Ok(triangles.to_vec())
 }

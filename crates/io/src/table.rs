@@ -2,11 +2,11 @@
 
 mod row;
 
-pub use row::csv_row;
+pub use row::{CsvRow, csv_row, csv_rows};
 
 use crate::error::IoError;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Appends rows of numbers to a CSV file whose header is `name [unit]`.
@@ -110,13 +110,7 @@ impl TableWriter {
             let reason = format!("a row of {} values for {} columns", values.len(), self.columns);
             return Err(IoError::new("write", &self.path, reason));
         }
-        for (i, &value) in values.iter().enumerate() {
-            if i > 0 {
-                self.pending.push(b',');
-            }
-            self.pending.extend_from_slice(shortest(value).as_bytes());
-        }
-        self.pending.push(b'\n');
+        row::append_row(&mut self.pending, values.iter().map(|&value| shortest(value)));
         if self.flush_every_row || self.pending.len() > 1 << 16 { self.flush() } else { Ok(()) }
     }
 
@@ -168,7 +162,6 @@ fn header_line(columns: &[(&str, &str)]) -> Result<String, String> {
     if columns.is_empty() {
         return Err("a table needs a column".to_owned());
     }
-    let mut line = String::new();
     for (i, (name, unit)) in columns.iter().enumerate() {
         if !can_be_a_column(name) || !(unit.is_empty() || can_be_a_column(unit)) {
             return Err(format!("`{name} [{unit}]` cannot be the head of a column"));
@@ -176,14 +169,11 @@ fn header_line(columns: &[(&str, &str)]) -> Result<String, String> {
         if columns[..i].iter().any(|(taken, _)| taken == name) {
             return Err(format!("column `{name}` is given twice"));
         }
-        line.push_str(if i > 0 { "," } else { "" });
-        line.push_str(name);
-        if !unit.is_empty() {
-            line.push_str(&format!(" [{unit}]"));
-        }
     }
-    line.push('\n');
-    Ok(line)
+    Ok(csv_row(columns.iter().map(|(name, unit)| match *unit {
+        "" => (*name).to_owned(),
+        unit => format!("{name} [{unit}]"),
+    })))
 }
 
 /// The shortest text that reads back as the same number; powers of ten where plain digits would
@@ -221,44 +211,36 @@ impl Table {
     }
 }
 
-/// Reads a CSV file of numbers with a header. Empty lines and lines that start with `#` are
-/// skipped; fields may be quoted as long as they hold no comma.
+/// Reads a CSV file of numbers with a header. Empty lines and lines that begin with `#` are skipped; fields may be
+/// quoted.
 ///
 /// # Errors
 /// When the file cannot be read, has no header, or a line does not fit: the message has its
 /// number.
 pub fn read_table(path: &Path) -> Result<Table, IoError> {
     let fail = IoError::on("read", path);
-    let text = fs::read(path).map_err(|error: io::Error| fail(error.to_string()))?;
-    let text = String::from_utf8(text).map_err(|error| fail(error.to_string()))?;
+    let text = fs::read_to_string(path).map_err(|error| fail(error.to_string()))?;
     parse_table(&text).map_err(fail)
 }
 
 fn parse_table(text: &str) -> Result<Table, String> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
-    let (_, header) = lines.next().ok_or("it has no header line")?;
-    let columns: Vec<_> = header.split(',').map(|field| name_and_unit(unquoted(field))).collect();
-    let mut rows = Vec::new();
-    for (index, line) in lines {
-        let number = index + 1;
-        let fields: Vec<&str> = line.split(',').map(unquoted).collect();
-        if fields.len() != columns.len() {
-            let (found, wanted) = (fields.len(), columns.len());
-            return Err(format!("line {number} has {found} fields where the header has {wanted}"));
-        }
-        let values = fields.iter().zip(&columns).map(|(field, (name, _))| {
-            let value = if field.is_empty() { Ok(f64::NAN) } else { field.parse() };
-            value.map_err(|_| format!("line {number}, column `{name}`: `{field}` is not a number"))
-        });
-        rows.push(values.collect::<Result<_, _>>()?);
-    }
+    let mut rows = csv_rows(text);
+    let header = rows.next().ok_or("it has no header line")?;
+    let columns: Vec<_> = header.fields().map(name_and_unit).collect();
+    let rows = rows.map(|row| numbers(&row, &columns)).collect::<Result<_, _>>()?;
     Ok(Table { columns, rows })
 }
 
-fn unquoted(field: &str) -> &str {
-    let field = field.trim();
-    field.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(field)
+fn numbers(row: &CsvRow, columns: &[(String, String)]) -> Result<Vec<f64>, String> {
+    let (line, found, wanted) = (row.line(), row.fields().len(), columns.len());
+    if found != wanted {
+        return Err(format!("line {line} has {found} fields where the header has {wanted}"));
+    }
+    let values = row.fields().zip(columns).map(|(field, (name, _))| {
+        let value = if field.is_empty() { Ok(f64::NAN) } else { field.parse() };
+        value.map_err(|_| format!("line {line}, column `{name}`: `{field}` is not a number"))
+    });
+    values.collect()
 }
 
 fn name_and_unit(head: &str) -> (String, String) {

@@ -4,6 +4,7 @@
 //! `TimeValue`, the numbers of the frame, and a text array `units` with one `name: unit` a field.
 
 mod collection;
+mod element;
 mod read;
 mod read_grid;
 mod xml;

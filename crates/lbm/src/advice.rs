@@ -115,15 +115,20 @@ impl<D: Dim> Setup<D> {
         let name = named(self.operator);
         if !is_borne(&self.operator) {
             let told = format!(
-                "operator {name} bears a grid Reynolds number of {:.0} here and meets {reynolds:.1}",
+                "operator {name} is stable up to a grid Reynolds number of {:.0} here, and this flow has {reynolds:.1}",
                 bears(self.operator)
             );
             let Some(better) = CHOICES.into_iter().find(is_borne) else {
                 return format!(
-                    "{told}: smaller cells, or Regularised with a closure, such as smagorinsky: 0.1"
+                    "{told}: take smaller cells, or Regularised with a closure, such as smagorinsky: 0.1"
                 );
             };
-            return format!("{told}: {} bears {:.0}{}", named(better), bears(better), self.at_walls(better));
+            return format!(
+                "{told}; {} is stable up to {:.0}{}",
+                named(better),
+                bears(better),
+                self.at_walls(better)
+            );
         }
         let has_walls =
             !self.obstacles.is_empty() || self.faces.iter().take(D::N).flatten().any(|face| face.is_wall());
@@ -132,36 +137,36 @@ impl<D: Dim> Setup<D> {
             return match self.operator {
                 Operator::KUMAR | Operator::SingleRelaxation => {
                     format!(
-                        "operator {name} suits: there are no walls, and it is among the nearest in free flow"
+                        "operator {name} suits: there are no walls, and it is among the most accurate in free flow"
                     )
                 }
                 _ if is_borne(&free) => format!(
-                    "operator {name} is borne, but there are no walls: {} is nearer in free flow and bears more in a stream",
+                    "operator {name} is stable here, but there are no walls: {} is more accurate in free flow and more stable in a stream",
                     named(free)
                 ),
-                _ => format!("operator {name} suits: {} does not bear the scene", named(free)),
+                _ => format!("operator {name} suits: {} is not stable in this scene", named(free)),
             };
         }
         let best = Operator::DEFAULT;
         if self.operator == best {
             return format!(
-                "operator {name} suits: flat walls along the lattice lie exactly half-way, others do with none, and \
-                 it bears a grid Reynolds number of {:.0} here",
+                "operator {name} suits: flat walls along the lattice lie exactly half-way (no operator does that for others), and \
+                 it is stable up to a grid Reynolds number of {:.0} here",
                 bears(best)
             );
         }
         if is_borne(&best) {
             let at_walls = self.at_walls(self.operator);
             return format!(
-                "operator {name} is borne{at_walls}; {} is exact at flat walls and bears a grid Reynolds number of {:.0} \
-                 where this bears {:.0}",
+                "operator {name} is stable here{at_walls}; {} is exact at flat walls and stable up to a grid Reynolds number \
+                 of {:.0} instead of {:.0}",
                 named(best),
                 bears(best),
                 bears(self.operator)
             );
         }
         format!(
-            "operator {name} suits: {} does not bear the scene{}",
+            "operator {name} suits: {} is not stable in this scene{}",
             named(best),
             self.at_walls(self.operator)
         )

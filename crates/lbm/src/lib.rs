@@ -111,3 +111,10 @@ pub use setup::{Face, Profile, Setup, SetupError};
 pub type Lbm2 = Lbm<D2Q9, 9>;
 /// A fluid in space.
 pub type Lbm3 = Lbm<D3Q19, 19>;
+
+// Vectors and the solver contract, so that this crate alone is enough to use its solver.
+pub use granular_core;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

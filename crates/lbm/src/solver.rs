@@ -121,8 +121,8 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             unit: "",
             refuses: false,
             why: known(format!(
-                "largest speed times cell over viscosity; cells of {:.3e} m keep it, a closure or another operator \
-                 bears more",
+                "largest speed times cell over viscosity; cells of {:.3e} m keep it; a closure or another operator \
+                 allows more",
                 allowed * viscosity / speed
             )),
         });
@@ -135,7 +135,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 refuses: false,
                 why: format!(
                     "speed of sound times cell over viscosity; open faces excite what too little viscosity does not damp: a \
-                     relaxation time of {:.4} steps keeps it, a closure or another operator bears more",
+                     relaxation time of {:.4} steps keeps it; a closure or another operator allows more",
                     0.5 + 3.0_f64.sqrt() / of_sound
                 ),
             });

@@ -42,20 +42,23 @@ impl Default for StepSpec {
     }
 }
 
-/// A collision operator. Flat walls along the lattice are exact where `Lambda` is 3/16; inclined and round ones are exact with none.
+/// A collision operator. Flat walls along the lattice are exact if `Lambda` is 3/16; inclined and round ones are exact
+/// with no operator.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum OperatorSpec {
-    /// Multiple relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way between cells at any viscosity;
-    /// blows up in shear layers that all others bear.
+    /// Multiple relaxation times with `Lambda` 3/16: flat walls along the lattice lie exactly half-way between cells at
+    /// any viscosity; unstable in shear layers in which all others are stable.
     ExactWalls,
-    /// One relaxation time (BGK): walls move with the viscosity.
+    /// One relaxation time (BGK): positions of walls depend on the viscosity.
     SingleRelaxation,
-    /// Two relaxation times with this `Lambda`. By default 3/16 = 0.1875: flat walls along the lattice lie exactly half-way between
-    /// cells, and the error at others, if half-way, does not depend on the viscosity in slow flow.
+    /// Two relaxation times with this `Lambda`. By default 3/16 = 0.1875: flat walls along the lattice lie exactly
+    /// half-way between cells, and the error at others, if half-way, does not depend on the viscosity in slow flow.
     TwoRelaxation(f64),
-    /// Multiple relaxation times with the rates of the thesis: walls move with the viscosity; among the nearest in free flow.
+    /// Multiple relaxation times with the rates of the thesis: positions of walls depend on the viscosity; among the
+    /// most accurate in free flow.
     Kumar,
-    /// Regularised: bears high Reynolds numbers and is accurate away from walls, which move with the viscosity.
+    /// Regularised: stable at high Reynolds numbers and accurate away from walls, whose positions depend on the
+    /// viscosity.
     Regularised,
 }
 

@@ -93,7 +93,7 @@ impl Node {
             if whole < 1.0 || (long / exact.dt - whole).abs() > FIT * whole {
                 return refuse(
                     long,
-                    format!("it is no whole number of steps of {}", self.exact_steps(exact)),
+                    format!("it is not a whole number of steps of {}", self.exact_steps(exact)),
                 );
             }
             return self.few_enough(long, whole, exact.dt, limits);

@@ -65,7 +65,7 @@ impl<D: Dim> Dem<D> {
     /// A periodic cell holds as many grains as it began with.
     fn refuse_cell(&self) -> Result<(), SetupError> {
         match self.cell() {
-            Some(_) => Err(SetupError::new("number of inlets and outlets beside a periodic cell", 1.0, "0")),
+            Some(_) => Err(SetupError::new("number of inlets and outlets with a periodic cell", 1.0, "0")),
             None => Ok(()),
         }
     }

@@ -30,7 +30,7 @@ impl<D: Dim> Dem<D> {
         }
         if !self.inlets.is_empty() {
             let count = self.inlets.doors() as f64;
-            return Err(SetupError::new("number of inlets and outlets beside a periodic cell", count, "0"));
+            return Err(SetupError::new("number of inlets and outlets with a periodic cell", count, "0"));
         }
         let shares = cell.edges.inverse();
         for &position in &self.grains.position {

@@ -6,8 +6,8 @@ use granular_core::units::Stiffness;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The contact between two materials, or between bodies of one: what is given here holds instead
-/// of what the materials would make of it, and also when a stage changes their friction.
+/// The contact between two materials, or between bodies of one: what is given here replaces what would follow from the
+/// materials, even when a stage changes their friction.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Pair")]
 pub struct PairSpec {

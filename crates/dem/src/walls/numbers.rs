@@ -30,7 +30,7 @@ const ABOUT: [&str; 3] = ["x", "y", "z"];
 const TORQUE: &str =
     "torque on the wall about its axis where it turns, else about its middle (the point given for a plane)";
 const POSITION: &str = "place of the middle of the wall, or of the point given for a plane";
-const DISPLACEMENT: &str = "way that this point has gone since the start";
+const DISPLACEMENT: &str = "displacement of this point since the start";
 const VELOCITY: &str = "velocity of this point";
 const ANGLE: &str = "angle by which the wall has turned";
 const AREA: &str = "area on which the pressure of the servo acts; in the plane a length";

@@ -11,14 +11,14 @@ const CURVE: u32 = 60;
 /// Colour of curves from elsewhere: black.
 const ELSEWHERE: usize = 7;
 
-/// Draws a material file beside it, as `.svg` and `.png`. Returns the path without ending.
+/// Draws a material file, as `.svg` and `.png` next to it. Returns the path without ending.
 ///
 /// # Errors
 /// When the file cannot be read or is no material file, or the figure cannot be written.
 pub fn plot(path: &Path) -> Result<PathBuf, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;
     let file = MaterialFile::from_ron(&text).map_err(|failure| {
-        let no_material = "is a file, but none of `granular calibrate`";
+        let no_material = "is a file, but not one that `granular calibrate` wrote";
         failure.with_context(format_args!("{}: {no_material}", path.display()))
     })?;
     let stem = path.with_extension("");

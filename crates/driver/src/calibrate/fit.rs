@@ -1,17 +1,10 @@
 //! Least squares of friction over the inertial number.
 
+use crate::statistics::Line;
+
 /// Mean of the second numbers.
 pub(super) fn mean(points: &[(f64, f64)]) -> f64 {
     points.iter().map(|point| point.1).sum::<f64>() / points.len() as f64
-}
-
-/// Value at zero and slope of the line nearest to some points.
-pub(super) fn line(points: &[(f64, f64)]) -> (f64, f64) {
-    let count = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let covariance: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    let slope = covariance / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>();
-    (y - slope * x, slope)
 }
 
 /// `mu_s`, `mu_2` and `I_0` of the curve `mu_s + (mu_2 - mu_s) / (1 + I_0 / I)` nearest to some points. For each `I_0`,
@@ -21,10 +14,10 @@ pub(super) fn saturating(points: &[(f64, f64)]) -> [f64; 3] {
     for k in 0..=600 {
         let scale = 10_f64.powf(-2.0 + 0.005 * f64::from(k));
         let bent: Vec<(f64, f64)> = points.iter().map(|&(x, y)| (1.0 / (1.0 + scale / x), y)).collect();
-        let (start, rise) = line(&bent);
-        let misfit: f64 = bent.iter().map(|&(x, y)| (y - start - rise * x).powi(2)).sum();
+        let line = Line::through(&bent);
+        let misfit = line.misfit(&bent);
         if misfit < best.0 {
-            best = (misfit, [start, start + rise, scale]);
+            best = (misfit, [line.intercept, line.intercept + line.slope, scale]);
         }
     }
     best.1
@@ -37,9 +30,6 @@ mod tests {
     #[test]
     fn fits_find_the_curves_that_made_the_points() {
         let numbers = [0.003, 0.01, 0.03, 0.1, 0.3];
-        let straight: Vec<(f64, f64)> = numbers.map(|x| (x, 0.25 + 1.1 * x)).to_vec();
-        let (start, slope) = line(&straight);
-        assert!((start - 0.25).abs() < 1e-12 && (slope - 1.1).abs() < 1e-11);
         let bent: Vec<(f64, f64)> = numbers.map(|x| (x, 0.38 + 0.26 / (1.0 + 0.279 / x))).to_vec();
         let [low, high, scale] = saturating(&bent);
         assert!((low - 0.38).abs() < 1e-3 && (high - 0.64).abs() < 5e-3, "{low} {high}");

@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// Critical-state angle that the thesis claims for disks with friction 0.53 \[degrees\].
 const CLAIMED: [f64; 2] = [22.0, 24.0];
 
-/// The calibration as text, with the claim of the thesis beside it.
+/// The calibration as text, compared with the thesis.
 pub fn table(file: &MaterialFile) -> String {
     let mut text = String::new();
     let unit = if file.dimension == Dimension::Plane { "N/m" } else { "Pa" };

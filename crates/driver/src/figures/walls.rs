@@ -71,7 +71,7 @@ impl Walls<'_> {
         (low <= high).then_some([1e-3 * low, 1e-3 * high])
     }
 
-    /// Whether a wall is out of the way. A frame at the very start of a stage is of the state before it.
+    /// Whether a wall is open. A frame at the very start of a stage is of the state before it.
     fn is_open(&self, wall: &WallSpec, time: f64) -> bool {
         let begun = self.records.iter().filter(|record| record.start < time);
         let mut open = false;

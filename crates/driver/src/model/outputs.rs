@@ -313,7 +313,7 @@ fn check_figures(scene: &Scene, front: &'static str, unknown: &[&str], problems:
         if let Some(stage) = need.stage.filter(|s| !scene.stages.iter().any(|other| other.name == *s)) {
             let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
             let hint = nearest(stage, known.iter().copied());
-            let value = format!("`{stage}`, which is no stage of this scene");
+            let value = format!("`{stage}`, which is not a stage of this scene");
             let allowed = format!("a stage of this scene: {}", known.join(", "));
             problems.add(format!("figures.{k}.stage"), value, allowed, hint);
         }

@@ -5,15 +5,15 @@ use granular_core::units::{Angle, AngularVelocity, Force, Frequency, Length, Mas
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// How a wall moves. A wall that some stage starts waits until then; one that none starts moves from the beginning.
+/// Motion of a wall. A wall that a stage starts waits until then; otherwise it moves from the beginning.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum MotionSpec {
     /// At a constant velocity, one component per axis.
     Steady(Vec<Velocity>),
-    /// To and fro about a middle, beginning where the wall is.
+    /// Oscillation about a mean position, starting where the wall is.
     Oscillate {
-        /// Greatest distance from the middle, one component per axis.
+        /// Amplitude, one component per axis.
         amplitude: Vec<Length>,
         /// Frequency.
         frequency: Frequency,
@@ -28,7 +28,7 @@ pub enum MotionSpec {
         /// Angular velocity: one value, about z, in the plane and three components in space.
         spin: Vec<AngularVelocity>,
     },
-    /// Pressed by a force, as a body with a mass and a dashpot that moves along one direction.
+    /// Pushed by a force along one direction, as a body with a mass and a dashpot.
     Servo {
         /// Direction of the force on the wall, one number per axis, of any length; the normal of a plane by default.
         #[serde(default)]
@@ -42,24 +42,25 @@ pub enum MotionSpec {
         /// Area in m^2 on which the pressure acts; in the plane the length in m.
         #[serde(default)]
         area: Option<f64>,
-        /// Instead of an area that stays: pairs of names of planes that face one another, such as `[["left", "right"]]`. The
-        /// pressure acts on what they leave between them as they stand; one pair in the plane, two in space.
+        /// Instead of a constant area: pairs of names of opposite planes, such as `[["left", "right"]]`. The pressure
+        /// acts on the current area between them; one pair in the plane, two in space.
         #[serde(default)]
         between: Vec<Vec<String>>,
         /// Mass of the wall, in the plane per metre of depth; that of all grains by default.
         #[serde(default)]
         mass: Option<Mass>,
-        /// Damping in N s/m; by default the root of the mass times the normal stiffness of the material. A wall that nothing
-        /// stops moves at the force over the damping; while it moves, grains feel the force less the damping times its speed.
+        /// Damping in N s/m; by default the root of the mass times the normal stiffness of the material. A wall that
+        /// nothing stops moves at a speed of the force over the damping; while it moves, the force on the grains is
+        /// reduced by the damping times its speed.
         #[serde(default)]
         damping: Option<f64>,
-        /// Greatest speed of the wall; any by default.
+        /// Largest speed of the wall; unlimited by default.
         #[serde(default)]
         max_speed: Option<Velocity>,
     },
 }
 
-/// A box in which grains come in, never on top of others. An inlet that some stage starts waits until then.
+/// A box in which grains are inserted where there is room. An inlet that a stage starts waits until then.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InletSpec {
@@ -69,16 +70,16 @@ pub struct InletSpec {
     pub low: Vec<Length>,
     /// Corner with the highest coordinates.
     pub high: Vec<Length>,
-    /// Grains per second. Those that do not fit in are counted as `not_placed`.
+    /// Grains per second. Those that find no room are counted as `not_placed`.
     pub rate: f64,
-    /// Grains in all; without end by default.
+    /// Total number of grains; unlimited by default.
     #[serde(default)]
     pub number: Option<u64>,
     /// Sizes of the grains.
     pub grading: GradingSpec,
     /// Name of their material.
     pub material: String,
-    /// Velocity at which they come, one component per axis; at rest by default.
+    /// Their velocity, one component per axis; at rest by default.
     #[serde(default)]
     pub velocity: Vec<Velocity>,
     /// Random seed of sizes and places.
@@ -90,7 +91,7 @@ fn one() -> u64 {
     1
 }
 
-/// Where grains are taken out. They are counted as `removed`.
+/// Where grains are removed. They are counted as `removed`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum OutletSpec {
@@ -98,7 +99,7 @@ pub enum OutletSpec {
     Beyond {
         /// A point of the plane.
         point: Vec<Length>,
-        /// Its normal, which points to where grains are taken out.
+        /// Its normal, which points to the side on which grains are removed.
         normal: Vec<f64>,
     },
     /// Where the centre is outside a box.

@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellSpec {
-    /// Which axes are periodic, such as `[true, false]` for a chute with walls below and above. Walls stand
-    /// along axes that are not periodic only.
+    /// Which axes are periodic, such as `[true, false]` for a chute with walls below and above. Walls are allowed only
+    /// across axes that are not periodic.
     pub periodic: Vec<bool>,
-    /// Size, one length per axis; of an axis that is not periodic it has no meaning. By default that which the
-    /// sample `Cell` needs.
+    /// Size, one length per axis; ignored for axes that are not periodic. By default the size that the sample `Cell`
+    /// needs.
     #[serde(default)]
     pub size: Vec<Length>,
     /// Lowest corner, one length per axis; the origin by default.
@@ -21,7 +21,7 @@ pub struct CellSpec {
     pub low: Vec<Length>,
 }
 
-/// What drives the cell from now on. A component is named by two axes: `xy` is the velocity along x that grows
+/// What drives the cell from here on. A component is named by two axes: `xy` is the velocity along x that grows
 /// along y. Components that are not named are held still.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -30,7 +30,7 @@ pub struct CellChange {
     pub rate: BTreeMap<String, Frequency>,
     /// Components that follow a stress, positive in compression, such as `{ "yy": "1 kPa" }`.
     pub stress: BTreeMap<String, Pressure>,
-    /// Period with which the cell would answer a change of stress were the sample elastic, at critical damping; by
-    /// default that with which the mean grain swings on one contact. A longer one compresses more gently.
+    /// Period of the response of the cell to a change of stress if the sample were elastic, at critical damping; by
+    /// default that of the mean grain oscillating on one contact. A longer period compresses more gently.
     pub response: Option<Time>,
 }

@@ -21,7 +21,7 @@ pub struct FluidSpec {
     /// Density; that of water by default.
     #[serde(default = "water")]
     pub density: Density,
-    /// Largest speed that is expected. By default the largest that faces, obstacles and the start name.
+    /// Largest speed expected. By default the largest one given by faces, obstacles and the start.
     #[serde(default)]
     pub largest_speed: Option<Velocity>,
     /// What bounds the box.
@@ -33,12 +33,13 @@ pub struct FluidSpec {
     /// How it moves at the start.
     #[serde(default)]
     pub start: StartSpec,
-    /// Body forces that vary in space or time, beside gravity; they add up. What they drive has no speed that is known
-    /// beforehand: give `largest_speed`. Several of which one varies in both cost more than the fluid itself.
+    /// Body forces that vary in space or time; they are added to gravity. The speed of a flow that they drive is not
+    /// known beforehand, so give `largest_speed`. If there are several and one varies both in space and in time, they
+    /// cost more than the fluid itself.
     #[serde(default)]
     pub forces: Vec<ForceSpec>,
-    /// Points at which pressure and velocity can be written, by names of your choice: the probes `pressure_at_<name>` and
-    /// `velocity_at_<name>_x`.
+    /// Points at which pressure and velocity can be written, by names of your choice: the probes `pressure_at_<name>`
+    /// and `velocity_at_<name>_x`.
     #[serde(default)]
     pub gauges: BTreeMap<String, Vec<Length>>,
 }
@@ -130,18 +131,18 @@ pub struct FacesSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum FaceSpec {
-    /// What leaves here enters through the face opposite.
+    /// What leaves here enters through the opposite face.
     Periodic,
     /// A wall at rest.
     Wall,
     /// A wall that moves along itself, one component per axis.
     MovingWall(Vec<Velocity>),
-    /// A wall that moves along itself, fastest in its middle and at rest at its edges, so that a closed box has no jump of
-    /// velocity in its corners: the velocity given, one component per axis, times `16 s^2 (1 - s)^2` with s from 0 to 1
-    /// along the face; in space the product of two, of which periodic axes have none.
+    /// A wall that moves along itself, fastest in its middle and at rest at its edges, so that a closed box has no jump
+    /// of velocity in its corners: the velocity given, one component per axis, times `16 s^2 (1 - s)^2` with s from 0
+    /// to 1 along the face; in space the product of two, of which periodic axes have none.
     RegularisedLid(Vec<Velocity>),
-    /// A wall along which the fluid slips: its velocity less that of the wall is the slip length times the derivative of
-    /// the velocity across the wall.
+    /// A wall along which the fluid slips: its velocity less that of the wall is the slip length times the derivative
+    /// of the velocity across the wall.
     NavierSlip {
         /// Slip length.
         length: Length,
@@ -153,10 +154,11 @@ pub enum FaceSpec {
     FreeSlip,
     /// The fluid enters at a velocity.
     Inflow(ProfileSpec),
-    /// The fluid leaves, or enters, at a pressure over that at rest, and straight through the face. It throws all sound back, which may
-    /// look like shedding for long: where a stream leaves, Absorbing is better.
+    /// The fluid leaves, or enters, at a pressure over that at rest, and straight through the face. It reflects all
+    /// sound, which can look like vortex shedding for a long time: use Absorbing where a stream leaves.
     Outflow(Pressure),
-    /// The fluid leaves, or enters; sound and vortices leave, and the mean pressure over the face settles at this one over that at rest.
+    /// The fluid leaves, or enters; sound and vortices leave, and the mean pressure over the face settles at this one
+    /// over that at rest.
     Absorbing(Pressure),
 }
 
@@ -181,16 +183,17 @@ pub struct ObstacleSpec {
     pub name: String,
     /// Shape and place.
     pub shape: ShapeSpec,
-    /// How the method meets its surface.
+    /// How the method represents its surface.
     #[serde(default)]
     pub surface: SurfaceSpec,
-    /// How it moves; at rest by default. Only a `Ball` moves.
+    /// Its motion; at rest by default. Only a `Ball` can move.
     #[serde(default)]
     pub path: Option<PathSpec>,
-    /// How its surface turns: one value in the plane, three components in space; not at all by default.
+    /// Angular velocity of its surface: one value in the plane, three components in space; zero by default.
     #[serde(default)]
     pub spin: Vec<AngularVelocity>,
-    /// What forces are set over in `drag_coefficient_of_<name>` and `lift_coefficient_of_<name>`.
+    /// Speed and length that make forces the coefficients `drag_coefficient_of_<name>` and
+    /// `lift_coefficient_of_<name>`.
     #[serde(default)]
     pub reference: Option<ReferenceSpec>,
 }
@@ -225,12 +228,12 @@ pub enum ShapeSpec {
     },
     /// A polygon in the plane, its corners in order around it.
     Polygon(Vec<Vec<Length>>),
-    /// All that lies outside of a shape, such as `Hole(Ball(centre: [0, 0], radius: "1 cm"))`: the fluid is inside, as in a tank.
-    /// With an obstacle within it, it is an annulus.
+    /// Everything outside a shape, such as `Hole(Ball(centre: [0, 0], radius: "1 cm"))`: the fluid is inside, as in a
+    /// tank. With an obstacle within it, it is an annulus.
     Hole(Box<ShapeSpec>),
 }
 
-/// How the surface of a body is met. No choice lets mass through.
+/// How the method represents the surface of a body. None of them lets mass through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum SurfaceSpec {
     /// Where it is, by linear interpolation in two cases (Bouzidi, Firdaouss and Lallemand).
@@ -242,7 +245,7 @@ pub enum SurfaceSpec {
     HalfWay,
 }
 
-/// A motion known beforehand.
+/// A prescribed motion.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum PathSpec {

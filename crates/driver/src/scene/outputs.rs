@@ -22,9 +22,9 @@ pub struct Output {
 /// How often something is written: at the start and then in equal intervals.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum EverySpec {
-    /// Every so much simulated time, at the first step at or after it.
+    /// In intervals of simulated time, at the first step at or after each.
     Time(Time),
-    /// Every so many steps, 1 or more.
+    /// In intervals of steps, 1 or more.
     Steps(u64),
 }
 
@@ -32,14 +32,14 @@ pub enum EverySpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Writer {
-    /// One row of numbers per look, in a CSV file with units in its head; the first column is `time`.
+    /// One row of numbers per output time, in a CSV file with units in its header; the first column is `time`.
     Table {
         /// File in the run folder, such as `series.csv`.
         path: String,
         /// Numbers to write; `granular info <scene>` lists all there are.
         probes: Vec<String>,
-        /// Voronoi cells larger than this many times the mean are free surface and no part of the bulk, 2 by default; both
-        /// measured in the grain's own area or volume.
+        /// Voronoi cells larger than this many times the mean belong to the free surface and not to the bulk, 2 by
+        /// default; sizes are in units of the grain's own area or volume.
         #[serde(default = "free_surface")]
         free_surface: f64,
     },
@@ -52,8 +52,8 @@ pub enum Writer {
         /// Cells over which grains are averaged; the fields are then those of a continuum.
         #[serde(default)]
         grid: Option<GridSpec>,
-        /// Voronoi cells larger than this many times the mean are free surface and no part of the bulk, 2 by default; both
-        /// measured in the grain's own area or volume.
+        /// Voronoi cells larger than this many times the mean belong to the free surface and not to the bulk, 2 by
+        /// default; sizes are in units of the grain's own area or volume.
         #[serde(default = "free_surface")]
         free_surface: f64,
     },
@@ -64,7 +64,8 @@ pub enum Writer {
         /// Fields of contacts (`Link`) to write; `granular info <scene>` lists all there are.
         fields: Vec<String>,
     },
-    /// Fields along a line through a fluid or a `grid` of grains, as rows of a CSV file: time, distance, place, then the fields.
+    /// Fields along a line through a fluid or a `grid` of grains, as rows of a CSV file: time, distance, place, then
+    /// the fields.
     Profile {
         /// File in the run folder, such as `profile.csv`.
         path: String,
@@ -101,8 +102,8 @@ pub enum Writer {
     },
 }
 
-/// Square or cubic cells over which grains are averaged: coarse graining with a kernel that ends at twice its scale. Mass
-/// and momentum in the cells are exactly those of the grains; what is spread beyond the cells is written as
+/// Square or cubic cells over which grains are averaged: coarse graining with a kernel that ends at twice its scale.
+/// Mass and momentum in the cells are exactly those of the grains; what lies beyond the cells is written as
 /// `mass_outside`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -133,9 +134,9 @@ fn one_cell() -> usize {
 /// Which grains.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub enum Chosen {
-    /// Those with these identifiers, which count from 0.
+    /// Those with these identifiers, counted from 0.
     Ids(Vec<u32>),
-    /// Every so many, from identifier 0 on; 1 for all.
+    /// Every n-th, from identifier 0 on; 1 for all.
     Every(u32),
 }
 
@@ -186,8 +187,8 @@ pub enum FigureSpec {
         #[serde(default)]
         references: Vec<ReferenceCurve>,
     },
-    /// Run-out and height of a collapsing column over time: lengths over the width of the column,
-    /// times over sqrt(H/g).
+    /// Run-out and height of a collapsing column over time: lengths in units of the width of the column, times in units
+    /// of sqrt(H/g).
     Runout {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -239,12 +240,12 @@ pub enum FigureSpec {
         color: String,
         /// Name of the stage from whose start times count.
         stage: String,
-        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in
-        /// seconds for all others. Time 0 is the last frame before the stage begins.
+        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its
+        /// right); in seconds for all others. Time 0 is the last frame before the stage begins.
         times: Vec<f64>,
     },
-    /// Voronoi cells over the grains, grey by their packing density, dark where it is high and white at the free surface; in
-    /// the plane.
+    /// Voronoi cells over the grains, grey by their packing density, dark where it is high and white at the free
+    /// surface; in the plane.
     Cells {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -255,8 +256,8 @@ pub enum FigureSpec {
         range: Option<Vec<f64>>,
         /// Name of the stage from whose start times count.
         stage: String,
-        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in
-        /// seconds for all others. Time 0 is the last frame before the stage begins.
+        /// Times, at least one, in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its
+        /// right); in seconds for all others. Time 0 is the last frame before the stage begins.
         times: Vec<f64>,
     },
     /// Force chains: contacts of one frame, their width by the normal force.
@@ -267,11 +268,12 @@ pub enum FigureSpec {
         contacts: String,
         /// Name of the stage from whose start the time counts.
         stage: String,
-        /// Time in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in seconds for
-        /// all others. Time 0 is the last frame before the stage begins.
+        /// Time in units of sqrt(H/g) of a column that spreads (behind a Gate, or with nothing at its right); in
+        /// seconds for all others. Time 0 is the last frame before the stage begins.
         time: f64,
     },
-    /// A field of a fluid, or of grains on a grid, as a colour map, at several times; in space its middle layer along y.
+    /// A field of a fluid, or of grains on a grid, as a colour map, at several times; in space its middle layer along
+    /// y.
     Map {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -312,8 +314,8 @@ pub enum FigureSpec {
         #[serde(default)]
         references: Vec<ReferenceCurve>,
     },
-    /// What grains do after a push: their front, energies of motion, and the decay of motion along x. What it measures are
-    /// metrics of the run, explained in `docs/impacts.md`.
+    /// The response of grains to a push: their front, energies of motion, and the decay of motion along x. The numbers
+    /// that it measures become metrics of the run, explained in `docs/impacts.md`.
     Impact {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -321,13 +323,13 @@ pub enum FigureSpec {
         table: String,
         /// Name of the stage that begins with the push.
         stage: String,
-        /// Time after the push from which the decay of motion along x counts, in units of sqrt(H/g) with the height H of the
-        /// grains at the push; 0.84 by default, which is 7.5 sqrt(d/g) of a pile 80 mean diameters high.
+        /// Time after the push from which the decay of motion along x counts, in units of sqrt(H/g) with the height H
+        /// of the grains at the push; 0.84 by default, which is 7.5 sqrt(d/g) of a pile 80 mean diameters high.
         #[serde(default = "transient")]
         transient: f64,
     },
-    /// The spectrum of a column of a table from a stage on. Its highest peak is a metric of the run: `frequency_of_<column>`,
-    /// and with a reference `strouhal_of_<column>`.
+    /// The spectrum of a column of a table from a stage on. Its highest peak is a metric of the run:
+    /// `frequency_of_<column>`, and with a reference `strouhal_of_<column>`.
     Spectrum {
         /// Name of the figure in the run folder, without ending.
         path: String,
@@ -347,14 +349,14 @@ pub enum FigureSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawSpec {
-    /// Where it is from.
+    /// Source of the law.
     pub label: String,
-    /// Whether it is of the final height over the width, or radius, instead of the run-out over it.
+    /// Whether the law gives the final height over the width (or radius) instead of the run-out.
     #[serde(default)]
     pub of_height: bool,
     /// Coefficient and exponent up to the switch.
     pub low: (f64, f64),
-    /// Aspect ratio from which the second power holds.
+    /// Aspect ratio from which the second power applies.
     pub switch: f64,
     /// Coefficient and exponent from the switch on.
     pub high: (f64, f64),
@@ -372,9 +374,9 @@ impl LawSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReferenceCurve {
-    /// What it is and where it is from.
+    /// Description and source of the curve.
     pub label: String,
-    /// Its points: distance and value, each as they are drawn.
+    /// Its points, as pairs of distance and value in the units of the figure.
     pub points: Vec<(f64, f64)>,
     /// Whether to draw a line through the points instead of markers.
     #[serde(default)]

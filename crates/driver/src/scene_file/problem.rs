@@ -4,11 +4,16 @@ use super::path::{Found, find, parse_path};
 use super::tree::Tree;
 use super::words::visible;
 use super::{SceneText, Span};
+use annotate_snippets::{Annotation, AnnotationKind, Level, Origin, Renderer, Snippet as Source};
 use serde::Serialize;
 use std::fmt;
 
 /// More problems than this are only counted.
 const MOST_TOLD: usize = 100;
+
+/// Characters of a line that are kept before and behind its part: a window keeps a file without line breaks readable.
+const BEFORE: usize = 160;
+const AFTER: usize = 60;
 
 /// What is wrong with a scene, where, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -164,9 +169,6 @@ impl SceneProblem {
 
 impl Snippet {
     fn of(text: &str, span: &Span, label: String) -> Self {
-        // A window around the part keeps a file without line breaks readable.
-        const BEFORE: usize = 80;
-        const AFTER: usize = 60;
         let start = text[..span.start].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[span.start..].find('\n').map_or(text.len(), |newline| span.start + newline);
         let line = text[start..end].trim_end_matches('\r');
@@ -196,32 +198,60 @@ impl fmt::Display for Place {
     }
 }
 
+impl SceneProblem {
+    /// The problem as text, as it is displayed, but in colour for a terminal.
+    pub fn in_colour(&self) -> String {
+        self.rendered(&Renderer::styled())
+    }
+
+    fn rendered(&self, renderer: &Renderer) -> String {
+        let place = visible(&self.place.to_string());
+        let title = Level::ERROR.primary_title(visible(&self.message));
+        let mut allowed = self.allowed.as_deref().map(|allowed| visible(&format!("allowed: {allowed}")));
+        let group = match &self.snippet {
+            None => title.element(Origin::path(place)),
+            Some(snippet) => {
+                let label = match snippet.label.as_str() {
+                    "" => allowed.take().unwrap_or_default(),
+                    label => visible(label),
+                };
+                let line = self.place.line.unwrap_or(1);
+                let source = snippet.source(line, label);
+                match &self.place.file {
+                    // Columns of a line that was cut are not those of the file.
+                    Some(file) if !snippet.is_cut() => title.element(source.path(visible(file))),
+                    _ => title.element(Origin::path(place)).element(source),
+                }
+            }
+        };
+        let notes = self.notes.iter().map(|note| Level::NOTE.message(visible(note)));
+        let hint = self.hint.iter().map(|hint| Level::HELP.message(visible(hint)));
+        let allowed = allowed.into_iter().map(|allowed| Level::NOTE.no_name().message(allowed));
+        let text = renderer.render(&[group.elements(allowed.chain(notes).chain(hint))]);
+        // Without a line of the scene there is no column of line numbers under which the rest would stand.
+        if self.snippet.is_some() { text } else { text.replace('\n', "\n ") }
+    }
+}
+
+impl Snippet {
+    /// Whether the text does not begin where the line does.
+    fn is_cut(&self) -> bool {
+        self.before > BEFORE
+    }
+
+    /// The line, of this number, with its part underlined.
+    fn source(&self, line: usize, label: String) -> Source<'_, Annotation<'_>> {
+        let byte = |count: usize| self.text.char_indices().nth(count).map_or(self.text.len(), |(at, _)| at);
+        let span = byte(self.before)..byte(self.before + self.width);
+        let annotation = AnnotationKind::Primary.span(span);
+        let annotation = if label.is_empty() { annotation } else { annotation.label(label) };
+        Source::source(self.text.as_str()).line_start(line).annotation(annotation)
+    }
+}
+
 impl fmt::Display for SceneProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = self.place.line.map_or(String::new(), |line| line.to_string());
-        let gutter = " ".repeat(line.len().max(1) + 1);
-        writeln!(f, "error: {}", visible(&self.message))?;
-        write!(f, "{gutter}--> {}", visible(&self.place.to_string()))?;
-        let mut allowed = self.allowed.as_deref().map(|allowed| format!("allowed: {allowed}"));
-        if let Some(snippet) = &self.snippet {
-            let label = match snippet.label.as_str() {
-                "" => allowed.take().unwrap_or_default(),
-                label => label.to_owned(),
-            };
-            write!(f, "\n{gutter} |\n {line} | {}\n{gutter} | ", snippet.text)?;
-            let carets = "^".repeat(snippet.width);
-            write!(
-                f,
-                "{}",
-                format!("{}{carets} {}", " ".repeat(snippet.before), visible(&label)).trim_end()
-            )?;
-        }
-        let notes = self.notes.iter().map(|note| format!("note: {note}"));
-        let hint = self.hint.iter().map(|hint| format!("help: {hint}"));
-        for remark in allowed.into_iter().chain(notes).chain(hint) {
-            write!(f, "\n{gutter} = {}", visible(&remark))?;
-        }
-        Ok(())
+        f.write_str(&self.rendered(&Renderer::plain()))
     }
 }
 

@@ -56,7 +56,7 @@ impl Axis {
         }
         let mut known = BTreeSet::new();
         if let Some(twice) = values.iter().find(|value| !known.insert(*value)) {
-            let message = format!("`{twice}` stands there twice; allowed: each value once");
+            let message = format!("`{twice}` is given twice; allowed: each value once");
             return Err(wrong(message, "leave one of them out"));
         }
         Ok(Self { path: path.to_owned(), values })
@@ -150,7 +150,7 @@ fn range(item: &str) -> Option<Result<Vec<String>, String>> {
 
 fn end_of(to: &str) -> Result<f64, String> {
     let number = to.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("it ends at `{}`, which is no number", to.trim()))
+    number.ok_or_else(|| format!("it ends at `{}`, which is not a number", to.trim()))
 }
 
 fn whole_numbers(from: f64, to: &str) -> Result<Vec<String>, String> {
@@ -229,7 +229,7 @@ mod tests {
             ("=1", "a path, `=` and values"),
             ("a=", "a value is missing"),
             ("a=1,,2", "a value is missing"),
-            ("a=1,2,1", "`1` stands there twice"),
+            ("a=1,2,1", "`1` is given twice"),
             ("a=[1", "not closed"),
             ("a=1]", "not opened"),
             ("a=\"x", "does not end"),

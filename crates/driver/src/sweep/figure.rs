@@ -1,6 +1,8 @@
 //! A measured number over an axis of a sweep, as a figure.
 
 use crate::failure::Failure;
+use crate::statistics::{PowerLaw, mean_and_error};
+use granular_io::csv_rows;
 use granular_io::figure::{Axis, Chart, Series, Style};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -101,14 +103,16 @@ fn chart([x, y]: [&str; 2], view: &View, curves: Vec<Groups>, counts: &Counts) -
         let series = series(label.clone(), groups, counts.mixed.is_empty()).colour(colour % 7);
         let mut before: Option<PowerLaw> = None;
         for &range in &view.fits {
-            let law = PowerLaw::of(&series.points, range).ok_or_else(|| {
+            let law = power_law(&series.points, range).ok_or_else(|| {
                 let [low, high] = range;
                 let reason = "has no three points there, all above zero";
                 Failure::io("--fit", format!("`{label}` {reason}: {low} to {high}"))
             })?;
             let meets = before.and_then(|before| before.meets(&law));
             let meets = meets.map_or(String::new(), |x| format!("; meets the one before at {x:.4}"));
-            chart = chart.with(law.series(range).colour(colour % 7)).note(format!("{label}: {law}{meets}"));
+            chart = chart
+                .with(drawn(&law, range).colour(colour % 7))
+                .note(format!("{label}: fitted {law}{meets}"));
             before = Some(law);
         }
         chart = chart.with(series);
@@ -190,7 +194,7 @@ impl Collected {
             return Ok(name);
         }
         let axes = self.axes.join(", ");
-        Err(Failure::io(flag, format!("`{name}` is no axis of this sweep; allowed: {axes}")))
+        Err(Failure::io(flag, format!("`{name}` is not an axis of this sweep; allowed: {axes}")))
     }
 
     /// What is along x: an axis, or a number that runs have measured.
@@ -259,12 +263,11 @@ fn series(label: String, mut groups: Vec<Group>, are_repetitions: bool) -> Serie
     groups.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut points, mut errors) = (Vec::new(), Vec::new());
     for (x, values) in groups {
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        let (mean, error) = mean_and_error(&values);
         points.push([x, mean]);
-        let among = if are_repetitions { count } else { 1.0 };
-        errors.push(if count > 1.0 { (squares / (count - 1.0) / among).sqrt() } else { 0.0 });
+        let count = values.len() as f64;
+        let bar = if are_repetitions { error } else { error * count.sqrt() };
+        errors.push(if values.len() > 1 { bar } else { 0.0 });
     }
     if errors.iter().all(|&error| error == 0.0) {
         return Series::new(label, points, Style::Markers);
@@ -272,78 +275,44 @@ fn series(label: String, mut groups: Vec<Group>, are_repetitions: bool) -> Serie
     Series::new(label, points, Style::ErrorBars(errors))
 }
 
-/// Curves of all reference files. A label may hold commas: the last two fields are the numbers.
+/// Curves of all reference files. A label may hold commas, also without quotes: the last two fields are the numbers.
 fn references(view: &View) -> Result<Vec<Curve>, Failure> {
     let mut curves = Vec::new();
     for path in &view.references {
         let content = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), error))?;
-        let rows = content.lines().enumerate().skip(1);
-        for (k, row) in rows.filter(|(_, row)| !row.trim().is_empty() && !row.starts_with('#')) {
-            let mut fields = row.rsplitn(3, ',');
-            let (y, x, label) = (fields.next(), fields.next(), fields.next());
-            let number = |field: Option<&str>| field?.trim().parse::<f64>().ok();
-            let (Some(y), Some(x), Some(label)) = (number(y), number(x), label) else {
-                let reason = format!("`{row}`: a label, x and y are expected, with commas between");
-                return Err(Failure::io(format!("{}:{}", path.display(), k + 1), reason));
-            };
-            entry(&mut curves, label.trim().trim_matches('"').to_owned()).push([x, y]);
+        for row in csv_rows(&content).skip(1) {
+            let fields: Vec<&str> = row.fields().collect();
+            let point = fields.split_last_chunk().and_then(|(label, [x, y])| {
+                let point = [x.parse::<f64>().ok()?, y.parse().ok()?];
+                (!label.is_empty()).then(|| (label.join(", "), point))
+            });
+            let (label, point) = point.ok_or_else(|| {
+                let found = fields.join(",");
+                let reason = format!("`{found}`: a label, x and y are expected, with commas between");
+                Failure::io(format!("{}:{}", path.display(), row.line()), reason)
+            })?;
+            entry(&mut curves, label).push(point);
         }
     }
     Ok(curves)
 }
 
-/// `y = factor x^exponent`, from least squares of the logarithms.
-struct PowerLaw {
-    factor: f64,
-    exponent: f64,
-    /// Standard error of the exponent.
-    error: f64,
+/// The power law of the points in a range of x; none when there are fewer than three, or one is not above zero.
+fn power_law(points: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<PowerLaw> {
+    let inside = points.iter().filter(|[x, _]| (low..=high).contains(x));
+    let inside: Vec<(f64, f64)> = inside.map(|&[x, y]| (x, y)).collect();
+    if inside.len() < 3 || inside.iter().any(|&(x, y)| !(x.ln().is_finite() && y.ln().is_finite())) {
+        return None;
+    }
+    let law = PowerLaw::through(&inside);
+    law.exponent.is_finite().then_some(law)
 }
 
-impl PowerLaw {
-    /// The law of the points in a range of x; none when there are fewer than three, or one is not
-    /// above zero.
-    fn of(points: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<Self> {
-        let inside = points.iter().filter(|[x, _]| (low..=high).contains(x));
-        let logs: Vec<[f64; 2]> = inside.map(|[x, y]| [x.ln(), y.ln()]).collect();
-        if logs.len() < 3 || logs.iter().flatten().any(|log| !log.is_finite()) {
-            return None;
-        }
-        let count = logs.len() as f64;
-        let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
-        let means = [mean(0), mean(1)];
-        let sum = |a: usize, b: usize| {
-            logs.iter().map(|log| (log[a] - means[a]) * (log[b] - means[b])).sum::<f64>()
-        };
-        let exponent = sum(0, 1) / sum(0, 0);
-        let scatter = (sum(1, 1) - exponent * sum(0, 1)).max(0.0) / (count - 2.0);
-        let law = Self {
-            factor: (means[1] - exponent * means[0]).exp(),
-            exponent,
-            error: (scatter / sum(0, 0)).sqrt(),
-        };
-        law.exponent.is_finite().then_some(law)
-    }
-
-    /// Where two laws have the same value.
-    fn meets(&self, other: &Self) -> Option<f64> {
-        let x = (self.factor / other.factor).powf(1.0 / (other.exponent - self.exponent));
-        x.is_finite().then_some(x)
-    }
-
-    fn series(&self, range: [f64; 2]) -> Series {
-        // Enough points that the curve looks smooth also on linear axes.
-        let x = |k: i32| range[0] * (range[1] / range[0]).powf(f64::from(k) / 40.0);
-        let points = (0..=40).map(|k| [x(k), self.factor * x(k).powf(self.exponent)]);
-        Series::new("", points.collect(), Style::Line)
-    }
-}
-
-impl std::fmt::Display for PowerLaw {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { factor, exponent, error } = self;
-        write!(f, "fitted {factor:.4} x^{exponent:.3}, exponent ± {error:.3}")
-    }
+/// The law as a line.
+fn drawn(law: &PowerLaw, [low, high]: [f64; 2]) -> Series {
+    // Enough points that the curve looks smooth also on linear axes.
+    let x = |k: i32| low * (high / low).powf(f64::from(k) / 40.0);
+    Series::new("", (0..=40).map(|k| [x(k), law.at(x(k))]).collect(), Style::Line)
 }
 
 #[cfg(test)]
@@ -353,18 +322,16 @@ mod tests {
     #[test]
     fn a_power_law_is_found_again() {
         let points: Vec<[f64; 2]> = (1..9).map(|k| [f64::from(k), 2.7 * f64::from(k).powf(0.6)]).collect();
-        let law = PowerLaw::of(&points, [2.0, 8.0]).unwrap();
+        let law = power_law(&points, [2.0, 8.0]).unwrap();
         assert!((law.factor - 2.7).abs() < 1e-12 && (law.exponent - 0.6).abs() < 1e-12, "{law}");
         assert!(law.error < 1e-7, "{law}");
-        assert!(PowerLaw::of(&points, [7.0, 8.0]).is_none());
-        assert!(PowerLaw::of(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]], [1.0, 3.0]).is_none());
-        let other = PowerLaw { factor: 1.35, exponent: 1.6, error: 0.0 };
-        assert!((law.meets(&other).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(law.meets(&PowerLaw { factor: 2.0, ..law }), None);
+        assert!(power_law(&points, [7.0, 8.0]).is_none());
+        assert!(power_law(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]], [1.0, 3.0]).is_none());
         // By hand: logarithms 0, 1, 2 and 0, 2, 1 have slope 1/2, squares left 3/2, error sqrt(3/2/2).
         let e = std::f64::consts::E;
-        let law = PowerLaw::of(&[[1.0, 1.0], [e, e * e], [e * e, e]], [0.5, 10.0]).unwrap();
+        let law = power_law(&[[1.0, 1.0], [e, e * e], [e * e, e]], [0.5, 10.0]).unwrap();
         assert!((law.exponent - 0.5).abs() < 1e-12 && (law.error - 0.75_f64.sqrt()).abs() < 1e-12, "{law}");
+        assert_eq!(law.to_string(), "1.6487 x^0.500, exponent ± 0.866");
     }
 
     #[test]

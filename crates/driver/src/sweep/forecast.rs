@@ -123,13 +123,13 @@ impl fmt::Display for Forecast {
             writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
         }
         let count = |what: &str| self.runs.iter().filter(|run| run.would == what).count();
-        let stay = self.runs.len() - count("start") - count("go on") - count("fail");
+        let stay = self.runs.len() - count("start") - count("resume") - count("fail");
         writeln!(
             f,
-            "{} runs: {} would start, {} go on, {} fail, {stay} stay; at most {} with {} threads, one after the other",
+            "{} runs: {} would start, {} resume, {} fail, {stay} stay; at most {} with {} threads, one after the other",
             self.runs.len(),
             count("start"),
-            count("go on"),
+            count("resume"),
             count("fail"),
             duration(self.seconds()),
             rayon::current_num_threads()

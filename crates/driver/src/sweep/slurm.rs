@@ -13,7 +13,7 @@ pub fn array_script(plan: &Plan, request: &Request, out: &Path, threads: usize) 
     format!(
         "#!/bin/bash\n\
          # A sweep of {count} runs, one task each. Submit it with sbatch from the folder in which it was made, with what\n\
-         # your machine asks for, such as --time, --mem and --partition. A task that ran out of time goes on where it\n\
+         # your machine asks for, such as --time, --mem and --partition. A task that ran out of time continues where it\n\
          # was when the script is submitted again; what is done stays. In the end this collects the table:\n\
          #   granular {sweep}\n\
          #SBATCH --job-name=granular\n\

@@ -81,7 +81,7 @@ impl State {
         match self {
             Self::Done => "stay: done",
             Self::Failed { .. } if !retry => "stay: failed before (--retry tries again)",
-            state if state.can_resume() => "go on",
+            state if state.can_resume() => "resume",
             _ => "start",
         }
     }

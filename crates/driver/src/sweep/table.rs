@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::folder::RunFolder;
 use crate::parts::{self, Part};
 use crate::scene::{Output, Scene, Writer};
-use granular_io::{csv_row, write_atomically};
+use granular_io::{csv_row, csv_rows, write_atomically};
 use std::path::Path;
 
 /// Names and values, in the order in which they become columns.
@@ -41,13 +41,14 @@ fn last_rows(folder: &Path, part: &Part) -> Result<Measures, Failure> {
         let Writer::Table { path, .. } = write else { continue };
         let file = folder.join(path);
         let text = std::fs::read_to_string(&file).map_err(|error| Failure::io(file.display(), error))?;
-        let mut lines = text.lines();
-        // A header holds no commas but those between columns.
-        let (Some(head), Some(last)) = (lines.next(), lines.next_back()) else { continue };
+        // Tables are long: of all rows but the first and the last, no field is looked at.
+        let (head, last) = text.split_once('\n').unwrap_or((text.as_str(), ""));
+        let last = last.lines().next_back().unwrap_or_default();
+        let (Some(head), Some(last)) = (csv_rows(head).next(), csv_rows(last).next()) else { continue };
         let name = path.strip_suffix(".csv").unwrap_or(path);
         let name = if part.name.is_empty() { name.to_owned() } else { format!("{}.{name}", part.name) };
-        let columns = head.split(',').map(|column| format!("{name}:{column}"));
-        found.extend(columns.zip(last.split(',').map(str::to_owned)));
+        let columns = head.fields().map(|column| format!("{name}:{column}"));
+        found.extend(columns.zip(last.fields().map(str::to_owned)));
     }
     Ok(found)
 }

@@ -4,9 +4,10 @@ use super::{Plan, State, lock_path, state};
 use crate::failure::Failure;
 use crate::lock::Lock;
 use crate::machine::most_threads;
-use crate::progress::{duration, say};
+use crate::progress::{duration, runs, say};
 use crate::run::{self, Interrupt};
 use crate::scene_file::SceneProblem;
+use indicatif::ProgressBar;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Mutex;
@@ -62,7 +63,7 @@ impl Plan {
         result?;
         if interrupt.raised.load(Ordering::Relaxed) {
             let signal = interrupt.signal.load(Ordering::Relaxed);
-            return Err(Failure::Interrupted { signal, hint: "go on with the same command".to_owned() });
+            return Err(Failure::Interrupted { signal, hint: "continue with the same command".to_owned() });
         }
         Ok(Outcome { report, failure: self.verdict(out, &chosen)? })
     }
@@ -114,6 +115,9 @@ impl Plan {
         let threads = (rayon::current_num_threads() / jobs).max(1);
         let (next, troubles) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let collected = Mutex::new(Instant::now());
+        let bar = if work.quiet || waiting.len() < 2 { ProgressBar::hidden() } else { runs(waiting.len()) };
+        // The time left changes also while no run ends.
+        bar.enable_steady_tick(Duration::from_millis(500));
         let worker = || {
             while !interrupt.raised.load(Ordering::Relaxed) {
                 let Some(&index) = waiting.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
@@ -124,6 +128,7 @@ impl Plan {
                     }
                     Err(error) => Err(Failure::io("threads", error)),
                 };
+                bar.inc(1);
                 if let Err(trouble) = done {
                     // The others would meet it too.
                     next.store(waiting.len(), Ordering::Relaxed);
@@ -132,6 +137,7 @@ impl Plan {
             }
         };
         std::thread::scope(|scope| (0..jobs).for_each(|_| _ = scope.spawn(worker)));
+        bar.finish_and_clear();
         troubles.into_inner().expect("no holder panics").into_iter().next().map_or(Ok(()), Err)
     }
 
@@ -155,7 +161,7 @@ impl Plan {
                 failed.push((code, format!("{}: {reason}", self.name(index))));
             }
         }
-        let help = "each is left alone until it is asked for with --retry";
+        let help = "they are run again only with --retry";
         Ok((!failed.is_empty()).then(|| failed_runs(&failed, chosen.len(), help)))
     }
 }
@@ -193,7 +199,7 @@ impl One<'_> {
             return Ok(());
         }
         if self.alone {
-            self.say(if state.can_resume() { "goes on" } else { "starts" });
+            self.say(if state.can_resume() { "resumes" } else { "starts" });
         }
         state::forget_failure(self.out, &point.folder)?;
         let (begun, folder) = (Instant::now(), self.out.join(&point.folder));

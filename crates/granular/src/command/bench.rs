@@ -21,7 +21,7 @@ pub(super) enum Bench {
     },
     /// Collision operators side by side: walls, pores, free flow, moving frames, cost; takes a minute.
     Operators,
-    /// Steps a second over sizes and threads.
+    /// Steps per second over sizes and threads.
     Speed {
         /// Solver.
         solver: Solver,
@@ -52,17 +52,17 @@ pub(super) struct Speed {
     /// Numbers of sites of a tessellation.
     #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000,1000000", value_name = "LIST")]
     sites: Vec<usize>,
-    /// Numbers of threads, each in a pool of its own.
+    /// Numbers of threads; each has its own pool.
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
     pools: Vec<usize>,
     /// Windows of one second; the median is shown.
     #[arg(long, default_value_t = 3, value_name = "N")]
     repeats: usize,
-    /// Measure on the state in this file, with rows `x y vx vy omega r` or `x y r` for disks, and
+    /// Measure with the state in this file, which has rows `x y vx vy omega r` or `x y r` for disks, and
     /// `x y z vx vy vz wx wy wz r` or `x y z r` for spheres.
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Write the states that were measured on to this folder.
+    /// Write the states that were measured to this folder.
     #[arg(long, value_name = "FOLDER")]
     write_state: Option<PathBuf>,
 }

@@ -17,10 +17,10 @@ const SAYS_EVERY: Duration = Duration::from_secs(10);
 /// What is calibrated.
 #[derive(clap::Subcommand, Debug)]
 pub(super) enum Calibrate {
-    /// Friction, dilation, solid fraction and stiffness, from shear of the grains of a scene in a periodic cell; about a
-    /// minute. Writes a material for continuum solvers, and a figure of it.
+    /// Friction, dilation, solid fraction and stiffness, from shear of the grains of a scene in a periodic cell; takes
+    /// about a minute. Writes a material for continuum solvers, and a figure.
     Friction {
-        /// Scene file, or - for standard input; its grading, material and dimension count.
+        /// Scene file, or - for standard input; its grading, material and dimension are used.
         scene: PathBuf,
         #[command(flatten)]
         edits: Edits,
@@ -30,11 +30,11 @@ pub(super) enum Calibrate {
         /// Grains in a sample; 200 by default, 1000 with --full.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(20..=1_000_000))]
         grains: Option<u64>,
-        /// Samples of each flow; 3 by default, 6 with --full.
+        /// Samples per flow; 3 by default, 6 with --full.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
         seeds: Option<u64>,
-        /// File for the material, such as glass.ron, which must not be there yet; the figure stands beside it as .svg and
-        /// .png. Printed only by default.
+        /// File for the material, such as glass.ron, which must not exist yet; the figure is written next to it as .svg
+        /// and .png. By default the material is only printed.
         #[arg(short, long, value_name = "FILE", value_parser = material_file)]
         out: Option<PathBuf>,
     },

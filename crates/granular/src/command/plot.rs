@@ -12,26 +12,26 @@ use std::path::PathBuf;
 /// What `granular plot` takes.
 #[derive(Args, Debug)]
 pub(super) struct Plot {
-    /// Folder of a run or of a sweep; several sweeps make one figure, in the folder of the first. Or a material file of
-    /// `granular calibrate`, whose figure stands beside it.
+    /// Folder of a run or of a sweep; several sweeps are drawn in one figure, in the folder of the first. Or a material
+    /// file of `granular calibrate`; the figure is written next to it.
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
-    /// Of a sweep: the axis along x, its first one by default; or a column of its table, of which each run has its own value.
+    /// For a sweep: the axis along x, the first one by default; or a column of its table, with a point for each run.
     #[arg(long, value_name = "AXIS")]
     x: Option<String>,
-    /// Of a sweep: the number along y, a column of its table; `runout` by default.
+    /// For a sweep: the number along y, a column of its table; `runout` by default.
     #[arg(long, value_name = "COLUMN")]
     y: Option<String>,
-    /// Of a sweep: the axis whose values have a curve each. Over all others the mean is taken.
+    /// For a sweep: the axis with one curve per value. Values are averaged over all other axes.
     #[arg(long, value_name = "AXIS")]
     by: Option<String>,
-    /// Of a sweep: logarithmic axes.
+    /// For a sweep: logarithmic axes.
     #[arg(long)]
     log: bool,
-    /// Of a sweep: fit a power law to each curve between these x, such as 4..10; several times for several laws.
+    /// For a sweep: fit a power law to each curve between these x, such as 4..10; may be repeated.
     #[arg(long = "fit", value_name = "LOW..HIGH", value_parser = range)]
     fits: Vec<[f64; 2]>,
-    /// Of a sweep: a CSV file of curves from elsewhere, with rows of label, x and y under a head line.
+    /// For a sweep: a CSV file with curves from elsewhere, with a header and the columns label, x and y.
     #[arg(long = "reference", value_name = "FILE")]
     references: Vec<PathBuf>,
 }

@@ -29,22 +29,22 @@ Exit code: that of the first run that failed, 0 when none did, 130 or 143 when i
 pub(super) struct Sweep {
     /// Scene file, or - for standard input.
     scene: PathBuf,
-    /// A place of the scene and its values; several make a grid, in which the last one is the fastest.
+    /// A value of the scene to vary, and its values; several make a grid, in which the last one varies fastest.
     #[arg(long, value_name = "PATH=VALUES")]
     set: Vec<String>,
     /// Folder of the sweep; `sweeps/<name of the scene>` by default.
     #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Runs at the same time; each gets its share of the threads.
+    /// Number of runs at the same time; each gets its share of the threads.
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
-    /// Try runs again that failed before.
+    /// Repeat runs that failed before.
     #[arg(long)]
     retry: bool,
-    /// Check all runs and show what would be done with each and how long it would take. Runs nothing.
+    /// Check all runs and show what would be done with each and how long it would take, without running anything.
     #[arg(long, conflicts_with_all = ["slurm", "only"])]
     dry_run: bool,
-    /// Work on this run alone, counted from 0, and collect no table.
+    /// Work on this run only, counted from 0, and collect no table.
     #[arg(long, value_name = "INDEX", conflicts_with = "slurm")]
     only: Option<usize>,
     /// Write the script of a Slurm array job with one task per run, and run nothing.

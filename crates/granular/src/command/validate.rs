@@ -20,7 +20,7 @@ pub(super) struct Validate {
 struct Cases {
     /// Only cases whose name contains this.
     filter: Option<String>,
-    /// Everything, not only what takes a few seconds.
+    /// Run the complete cases, which take hours, instead of the quick ones.
     #[arg(long)]
     full: bool,
 }
@@ -28,12 +28,12 @@ struct Cases {
 /// What is studied instead of cases.
 #[derive(clap::Subcommand, Debug)]
 enum Study {
-    /// Limits that a solver predicts beside those at which its runs fail; takes up to a minute. Exit code 1 when a
-    /// guard is silent, or a run fails within its bounds.
+    /// Compare the limits that a solver predicts with those at which its runs fail; takes up to a minute. Exit code 1
+    /// if a guard is silent or a run fails within its bounds.
     Stability {
         /// Solver.
         solver: Solver,
-        /// Finer; takes many minutes.
+        /// Use a finer search; takes many minutes.
         #[arg(long)]
         full: bool,
         /// Collision operators of `lbm`; all by default.

@@ -133,7 +133,7 @@ const SCENE_CASES: &[Case<'_>] = &[
         "contacts: \"contacts\", stage: \"collapse\"",
         "contacts: \"contacts\", stage: \"fall\"",
         2,
-        &["`figures.3.stage` is `fall`, which is no stage of this scene"],
+        &["`figures.3.stage` is `fall`, which is not a stage of this scene"],
     ),
     // Files.
     ("path: \"series.csv\"", "path: \"../series.csv\"", 2, &["`../series.csv`", "inside the run folder"]),
@@ -315,7 +315,7 @@ fn what_is_in_the_way_stays_as_it_is() {
     scratch.granular(&["resume", "foreign"]).expect(5).says(&["it lacks scene.ron and run.json"]);
     scratch.granular(&["resume", "nowhere"]).expect(5).says(&["nowhere: there is no such folder"]);
     scratch.granular(&["plot", "file"]).expect(5).says(&["file: is a file"]);
-    scratch.granular(&["info", "foreign"]).expect(5).says(&["foreign: is no run folder"]);
+    scratch.granular(&["info", "foreign"]).expect(5).says(&["foreign: is not a run folder"]);
     scratch.granular(&["new", "colum-collapse"]).expect(5).says(&["no template", "column-collapse"]);
     assert!(files(&scratch.path("")) == before, "files changed");
 

@@ -96,7 +96,7 @@ fn a_sweep_runs_again_when_a_file_of_its_scene_has_changed() {
     scratch.granular(&sweep).expect(0).says(&["2 of 2 runs are done"]);
     fs::write(scratch.path("scenes/shapes/plate.stl"), plate(0.5)).unwrap();
     let forecast = scratch.granular(&[&sweep[..], &["--dry-run"]].concat()).expect(0).out;
-    assert!(forecast.contains("2 runs: 2 would start, 0 go on, 0 fail, 0 stay"), "{forecast}");
+    assert!(forecast.contains("2 runs: 2 would start, 0 resume, 0 fail, 0 stay"), "{forecast}");
     scratch.granular(&sweep).expect(0);
     let after = folders(&scratch.path("sweep"));
     assert!(before.iter().all(|folder| !after.contains(folder)), "{before:?} {after:?}");

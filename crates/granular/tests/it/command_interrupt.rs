@@ -55,7 +55,7 @@ fn an_interrupted_run_is_resumed_to_the_same_bits() {
         std::thread::sleep(moments.between(0, 150));
         run.signal(signal);
         let outcome = run.wait().expect(code);
-        let help = format!("go on with `granular resume {signal}`");
+        let help = format!("continue with `granular resume {signal}`");
         let outcome = outcome.says(&["interrupted: the state is saved", &help]);
         assert_eq!(outcome.json()["exit"], code);
         assert_eq!(facts(&scratch.path(signal))["exit"], "interrupted");

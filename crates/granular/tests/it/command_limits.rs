@@ -97,7 +97,7 @@ fn what_the_memory_of_the_machine_cannot_hold_is_refused() {
     let said = soon(|| with_memory(&scratch, 1_000_000, &["check", "/dev/zero"])).expect(2);
     said.says(&["for which this machine has memory"]);
     let endless = ["check", "small.ron", "--set", "sample=File(path: \"/dev/zero\")", "--set", "walls=[]"];
-    soon(|| with_memory(&scratch, 1_000_000, &endless)).expect(2).says(&["it is no file"]);
+    soon(|| with_memory(&scratch, 1_000_000, &endless)).expect(2).says(&["it is not a file"]);
 }
 
 /// Each problem has its place, which once took the reading of the whole text.

@@ -128,7 +128,10 @@ fn draws_figures(scratch: &Scratch) {
         .says(&["the smaller first, such as 4..10"]);
     let wrong: &[(&[&str], &[&str])] = &[
         (&["--fit", "1..2"], &["--fit: `this sweep` has no three points there"]),
-        (&["--x", "friction"], &["--x: `friction` is no axis", "allowed: materials.glass.friction, gravity"]),
+        (
+            &["--x", "friction"],
+            &["--x: `friction` is not an axis", "allowed: materials.glass.friction, gravity"],
+        ),
         (&["--y", "run-out"], &["--y: no run", "number `run-out`; allowed: ", ", runout [1], "]),
         (&["--x", "gravity"], &["--x: `gravity` is `[0, -9.81]` in a run"]),
         (&["--reference", "nothing.csv"], &["nothing.csv"]),
@@ -160,8 +163,8 @@ fn a_stopped_sweep_says_how_to_go_on_and_does_nothing_twice() {
     run.wait().expect(143).says(&["interrupted: the state is saved", "the same command"]);
     assert!(table(&folder).contains(",waiting\n"), "{}", table(&folder));
     let forecast = scratch.granular(&[&start[..], &["--dry-run"]].concat()).expect(0).out;
-    assert!(forecast.contains("4 runs: 3 would start, 1 go on, 0 fail, 0 stay; at most"), "{forecast}");
-    let rest = scratch.granular(&start).expect(0).says(&["[1/4] run 0 (", ": goes on", "resuming at"]);
+    assert!(forecast.contains("4 runs: 3 would start, 1 resume, 0 fail, 0 stay; at most"), "{forecast}");
+    let rest = scratch.granular(&start).expect(0).says(&["[1/4] run 0 (", ": resumes", "resuming at"]);
     assert!(rest.out.contains("4 of 4 runs are done"), "{}", rest.out);
     let before = times(&folder);
     assert_eq!(before.len(), 4);
@@ -175,7 +178,7 @@ fn a_stopped_sweep_says_how_to_go_on_and_does_nothing_twice() {
         }
     }
     let forecast = scratch.granular(&[&wider[..], &["--dry-run"]].concat()).expect(0).out;
-    assert!(forecast.contains("6 runs: 2 would start, 0 go on, 0 fail, 4 stay; at most"), "{forecast}");
+    assert!(forecast.contains("6 runs: 2 would start, 0 resume, 0 fail, 4 stay; at most"), "{forecast}");
 }
 
 #[test]
@@ -184,7 +187,7 @@ fn what_fails_is_reported_and_not_tried_again_unasked() {
     let start = [FAILING, &["--out", "sweep"]].concat();
     let said = ["1 of 3 runs failed", "run 1 (solvers.grains.time_step=1; ", "refused: small.ron", "--retry"];
     let forecast = scratch.granular(&[&start[..], &["--dry-run"]].concat()).expect(3).says(&said[..3]);
-    assert!(forecast.out.contains("2 would start, 0 go on, 1 fail, 0 stay"), "{}", forecast.out);
+    assert!(forecast.out.contains("2 would start, 0 resume, 1 fail, 0 stay"), "{}", forecast.out);
     assert!(!scratch.path("sweep").exists());
     // The refused run does not keep the others from being done.
     let outcome = scratch.granular(&[&start[..], &["--json"]].concat()).expect(3).says(&said);
@@ -209,7 +212,7 @@ fn a_wrong_axis_is_told_before_anything_runs() {
         (&[], &["--set", "needs two values", "for example"]),
         (&["--set", "sample.seed=3"], &["nothing varies"]),
         (&["--set", "sample.seed"], &["--set sample.seed", "a path, `=` and values"]),
-        (&["--set", "sample.seed=1,1"], &["`1` stands there twice"]),
+        (&["--set", "sample.seed=1,1"], &["`1` is given twice"]),
         (&["--set", "sample.seed=1,2", "--set", "sample.seed=3"], &["set twice", "at once"]),
         (&["--set", "sample.sead=1,2"], &["unknown key `sead`", "did you mean `seed`?"]),
         (&["--set", "sample.seed=1,x"], &["sample.seed=x"]),
@@ -289,11 +292,11 @@ fn a_run_that_a_guard_stopped_starts_anew_when_it_is_tried_again() {
     let rows = table(&scratch.path("sweep"));
     assert_eq!(rows.matches(",stopped\n").count(), 2, "{rows}");
     let forecast = scratch.granular(&[&start[..], &["--dry-run", "--retry"]].concat()).expect(0).out;
-    assert!(forecast.contains("2 runs: 2 would start, 0 go on"), "{forecast}");
+    assert!(forecast.contains("2 runs: 2 would start, 0 resume"), "{forecast}");
     let retried = scratch.granular(&[&start[..], &["--only", "1", "--retry"]].concat()).expect(4);
     retried.says(&["1 of 1 runs failed", "run 1 (gravity=[21, 0]; ", ": starts", "--retry"]);
     scratch
         .granular(&["plot", "sweep", "--x", "height"])
         .expect(5)
-        .says(&["--x: `height` is no axis", "gravity"]);
+        .says(&["--x: `height` is not an axis", "gravity"]);
 }

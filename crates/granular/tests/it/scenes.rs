@@ -113,12 +113,13 @@ fn assert_outputs(run: &Path) {
 
 /// What stands before the generated part.
 const PREFACE: &str = "\
-All that a scene file may say; the file is [RON](https://github.com/ron-rs/ron). A value with a unit is a number in SI units or
-a text such as `\"1.15 mm\"` with [these units](units.md); a wrong unit is an error. `granular new` prints scenes to start from,
-`granular check` says what is wrong with one, and `--set path=value` changes a value on the command line.
+All keys of a scene file, which is written in [RON](https://github.com/ron-rs/ron). A value with a unit is a number in SI units or
+a text such as `\"1.15 mm\"` with [its unit](units.md); a wrong unit is an error. `granular new` prints scenes to start from,
+`granular check` finds the mistakes in a scene, and `--set path=value` changes a value on the command line. \"The thesis\" is Kumar2014 in
+the [references](references.md).
 
-This page is generated from the comments in `crates/driver/src/scene.rs`, `scene/` beside it, and `spec.rs` of the solver crates: change
-those and run `GRANULAR_UPDATE=1 cargo test -p granular scene_reference`.";
+This page is generated from the comments in `crates/driver/src/scene.rs`, the files in `crates/driver/src/scene/`, and `spec.rs` of the
+solver crates: change those and run `GRANULAR_UPDATE=1 cargo test -p granular scene_reference`.";
 
 #[test]
 fn the_scene_reference_is_up_to_date() {

@@ -199,3 +199,41 @@ fn what_is_cited_is_in_the_references_and_the_other_way_round() {
         assert!(cited.contains_key(key), "docs/references.md lists [{key}], which nothing cites");
     }
 }
+
+/// What a package needs to be published: its own README, both licences and words to be found by; no address that does not
+/// exist.
+#[test]
+fn packages_carry_what_their_users_read() {
+    let text = cargo(&["metadata", "--no-deps", "--format-version", "1", "--offline"]);
+    let metadata: Value = serde_json::from_str(&text).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    assert!(packages.len() > 8, "{} packages", packages.len());
+    for package in packages {
+        let name = package["name"].as_str().unwrap();
+        let folder = Path::new(package["manifest_path"].as_str().unwrap()).parent().unwrap();
+        assert_eq!(package["license"], "MIT OR Apache-2.0", "{name}");
+        assert_eq!(package["readme"], "README.md", "{name}");
+        for (file, words) in [
+            ("README.md", name),
+            ("LICENSE-MIT", "Permission is hereby granted"),
+            ("LICENSE-APACHE", "Apache License"),
+        ] {
+            let text = fs::read_to_string(folder.join(file))
+                .unwrap_or_else(|error| panic!("{name}: {file}: {error}"));
+            assert!(text.contains(words), "{name}: {file} does not say `{words}`");
+        }
+        for list in ["keywords", "categories"] {
+            let count = package[list].as_array().unwrap().len();
+            assert!((1..=5).contains(&count), "{name} has {count} {list}");
+        }
+        assert!(
+            package["keywords"].as_array().unwrap().iter().all(|word| word.as_str().unwrap().len() <= 20),
+            "{name}"
+        );
+        assert_eq!(package["repository"], Value::Null, "{name}: a repository that exists, or none");
+        let features = package["features"].as_object().unwrap();
+        let docs = &package["metadata"]["docs"]["rs"];
+        let whole = docs["all-features"] == true || docs["features"].is_array();
+        assert!(features.is_empty() || whole, "{name} shows not all features on docs.rs");
+    }
+}

@@ -76,7 +76,42 @@ fn a_bad_line_is_named() {
     assert!(parse_table("a,b\n1,\n").unwrap().rows[0][1].is_nan());
 }
 
+#[test]
+fn a_header_with_commas_marks_and_blanks_is_read_like_any_other() {
+    // As a spreadsheet writes it, and with blanks as people type them.
+    let text = "\u{feff}\"speed, mean [m/s]\", time [s] \r\n \r\n\"1\" , 2\r\n# note\r\n3,4\r\n";
+    let table = parse_table(text).unwrap();
+    assert_eq!(table.unit("speed, mean"), Some("m/s"));
+    assert_eq!(table.rows, [[1.0, 2.0], [3.0, 4.0]]);
+    assert_eq!(parse_table(&format!("{text}5")).unwrap_err(), "line 6 has 1 fields where the header has 2");
+}
+
+/// Tables of runs that began before are continued and compared byte by byte: this is what was written then.
+#[test]
+fn the_text_of_a_table_does_not_change() {
+    let folder = Scratch::new("text");
+    let path = folder.path("series.csv");
+    let mut table = TableWriter::create(&path, &[("time", "s"), ("count", ""), ("a \u{3b4}", "-")]).unwrap();
+    table.row(&[1e-5, 3.0, 0.1 + 0.2]).unwrap();
+    table.row(&[f64::NAN, -0.0, f64::NEG_INFINITY]).unwrap();
+    table.row(&[1e16, 123456.0, 1.0 / 3.0]).unwrap();
+    drop(table);
+    let expected = "time [s],count,a \u{3b4} [-]\n1e-5,3,0.30000000000000004\nnan,-0,-inf\n1e16,123456,0.3333333333333333\n";
+    assert_eq!(fs::read_to_string(path).unwrap(), expected);
+    // The form of a row with every kind of field.
+    assert_eq!(csv_row(["a", "", "b \"c\"", "d\ne", "#f", " g"]), "a,,\"b \"\"c\"\"\",\"d\ne\",#f, g\n");
+}
+
 proptest! {
+    #[test]
+    fn rows_of_any_text_come_back(fields in prop::collection::vec("[a-z,\"\n#é-]{1,8}", 1..6)) {
+        let row = csv_row(["first"].into_iter().chain(fields.iter().map(String::as_str)));
+        let back: Vec<CsvRow> = csv_rows(&row).collect();
+        prop_assert_eq!(back.len(), 1);
+        let back: Vec<&str> = back[0].fields().skip(1).collect();
+        prop_assert_eq!(back, fields.iter().map(|field| field.trim()).collect::<Vec<_>>());
+    }
+
     #[test]
     fn every_number_reads_back_as_itself(bits: u64) {
         let value = f64::from_bits(bits);

@@ -1,6 +1,7 @@
 //! The list of files of a run over time, `.pvd`.
 
-use super::xml::{escaped, unescaped};
+use super::element::elements;
+use super::xml::escaped;
 use crate::atomic::write_atomically;
 use crate::error::IoError;
 use crate::table::shortest;
@@ -33,11 +34,12 @@ impl Collection {
     pub fn open(path: &Path) -> Result<Self, IoError> {
         let fail = IoError::on("read", path);
         let text = fs::read_to_string(path).map_err(|error| fail(error.to_string()))?;
+        let elements = elements(&text).map_err(|error| fail(error.to_string()))?;
         let mut entries = Vec::new();
-        for line in text.lines().filter(|line| line.starts_with("<DataSet ")) {
-            let time = attribute(line, "timestep").and_then(|time| time.parse().ok());
-            let entry = time.zip(attribute(line, "file").map(unescaped));
-            entries.push(entry.ok_or_else(|| fail(format!("`{line}` has no time or file")))?);
+        for data_set in elements.iter().filter(|element| element.name == "DataSet") {
+            let entry = data_set.number("timestep").zip(data_set.attribute("file").map(str::to_owned));
+            let number = entries.len() + 1;
+            entries.push(entry.ok_or_else(|| fail(format!("data set {number} has no time or file")))?);
         }
         Ok(Self { path: path.to_path_buf(), entries })
     }
@@ -96,11 +98,6 @@ impl Collection {
     }
 }
 
-fn attribute<'a>(line: &'a str, name: &str) -> Option<&'a str> {
-    let rest = line.split_once(&format!(" {name}=\""))?.1;
-    rest.split_once('"').map(|(value, _)| value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,5 +117,15 @@ mod tests {
         assert_eq!(Collection::reopen_at(&path, 3).unwrap().entries()[2], (0.4, "2.vtp".to_owned()));
         let short = Collection::reopen_at(&path, 4).unwrap_err().to_string();
         assert!(short.contains("lists 3 files where 4 are expected"), "{short}");
+        let text = fs::read_to_string(&path).unwrap();
+        // As another program might lay it out: all on one line, the attributes in another order.
+        let other = text.replace('\n', " ").replace("timestep=\"0\" part=\"0\"", "part='0'  timestep='0'");
+        fs::write(&path, other).unwrap();
+        assert_eq!(Collection::open(&path).unwrap().entries()[..2], collection.entries()[..2]);
+        fs::write(&path, text.replacen("timestep", "time", 1)).unwrap();
+        let wrong = Collection::open(&path).unwrap_err().to_string();
+        assert!(wrong.contains("data set 1 has no time or file"), "{wrong}");
+        fs::write(&path, text.replacen("<DataSet", "<DataSet <", 1)).unwrap();
+        assert!(Collection::open(&path).is_err());
     }
 }

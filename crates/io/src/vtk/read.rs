@@ -1,6 +1,6 @@
 //! Reading back files that this crate wrote, for figures made after a run.
 
-use super::xml::unescaped;
+use super::element::{Element, elements};
 use crate::error::IoError;
 use std::fs;
 use std::path::Path;
@@ -40,10 +40,11 @@ pub(super) fn magnitude(fields: &[(String, usize, Vec<f64>)], name: &str) -> Opt
 /// # Errors
 /// When the file cannot be read or is of another kind.
 pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
-    let Content { head, time, arrays } = Content::read(path, "PolyData")?;
-    let mut read = Points { time, ..Points::default() };
+    let content = Content::read(path, "PolyData")?;
+    let lines = content.element("Piece").and_then(|piece| piece.number::<usize>("NumberOfLines"));
+    let mut read = Points { time: content.time, ..Points::default() };
     let mut connectivity = Vec::new();
-    for (name, components, values) in arrays {
+    for (name, components, values) in content.arrays {
         match name.as_str() {
             "Points" => read.points = values.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
             "connectivity" => connectivity = values,
@@ -51,16 +52,15 @@ pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
             _ => read.fields.push((name, components, values)),
         }
     }
-    if head.contains("NumberOfLines=") {
+    if lines.is_some_and(|lines| lines > 0) {
         read.links = connectivity.chunks_exact(2).map(|pair| [pair[0] as u32, pair[1] as u32]).collect();
     }
     Ok(read)
 }
 
-/// The text and the appended arrays of a file.
+/// The elements and the appended arrays of a file.
 pub(super) struct Content {
-    /// All before the appended data.
-    pub(super) head: String,
+    elements: Vec<Element>,
     /// Time \[s\]; not a number when the file has none.
     pub(super) time: f64,
     /// Name, number of components, and values.
@@ -71,36 +71,55 @@ impl Content {
     /// Reads a file whose data set is of `kind`.
     pub(super) fn read(path: &Path, kind: &str) -> Result<Self, IoError> {
         let bytes = fs::read(path).map_err(IoError::on("read", path))?;
-        let fail = |reason: &str| IoError::new("read", path, reason.to_owned());
-        let mark = b"<AppendedData encoding=\"raw\">\n_";
-        let at = bytes.windows(mark.len()).position(|window| window == mark);
-        let at = at.ok_or_else(|| fail("it is no file of raw appended data"))?;
-        let head = std::str::from_utf8(&bytes[..at]).map_err(|_| fail("its head is no text"))?;
-        if !head.contains(&format!("<VTKFile type=\"{kind}\"")) {
-            return Err(fail(&format!("it holds no {kind}")));
+        Self::of(&bytes, kind).map_err(IoError::on("read", path))
+    }
+
+    fn of(bytes: &[u8], kind: &str) -> Result<Self, String> {
+        let (head, blocks) = parts(bytes).ok_or("it is not a file with raw appended data")?;
+        let head = std::str::from_utf8(head).map_err(|_| "its head is not text")?;
+        let elements = elements(head).map_err(|error| error.to_string())?;
+        let file = elements.iter().find(|element| element.name == "VTKFile");
+        if file.and_then(|file| file.attribute("type")) != Some(kind) {
+            return Err(format!("it does not hold {kind}"));
         }
-        let blocks = &bytes[at + mark.len()..];
-        let mut content = Self { head: head.to_owned(), time: f64::NAN, arrays: Vec::new() };
-        for line in head.lines().filter(|line| line.starts_with("<DataArray ")) {
-            let name = attribute(line, "Name").ok_or_else(|| fail("an array has no name"))?;
-            if let Some(offset) = attribute(line, "offset").and_then(|text| text.parse::<usize>().ok()) {
-                let kind = attribute(line, "type").unwrap_or_default();
-                let values = block(blocks, offset, &kind).ok_or_else(|| fail("it ends within an array"))?;
-                let components = attribute(line, "NumberOfComponents").and_then(|n| n.parse().ok());
-                content.arrays.push((name, components.unwrap_or(1).max(1), values));
+        let layout = ["byte_order", "header_type", "compressor"].map(|name| file?.attribute(name));
+        if layout != [Some("LittleEndian"), Some("UInt64"), None] {
+            return Err(
+                "its numbers are not little-endian, uncompressed and with lengths in UInt64".to_owned()
+            );
+        }
+        let mut content = Self { elements: Vec::new(), time: f64::NAN, arrays: Vec::new() };
+        for array in elements.iter().filter(|element| element.name == "DataArray") {
+            let name = array.attribute("Name").ok_or("an array has no name")?;
+            if let Some(offset) = array.number::<usize>("offset") {
+                let kind = array.attribute("type").unwrap_or_default();
+                let values = block(blocks, offset, kind).ok_or("it ends within an array")?;
+                let components = array.number("NumberOfComponents").unwrap_or(1).max(1);
+                content.arrays.push((name.to_owned(), components, values));
             } else if name == "TimeValue" {
-                let value = line.split('>').nth(1).and_then(|rest| rest.split('<').next());
-                content.time = value.and_then(|text| text.trim().parse().ok()).unwrap_or(f64::NAN);
+                content.time = array.text.trim().parse().unwrap_or(f64::NAN);
             }
         }
-        Ok(content)
+        Ok(Self { elements, ..content })
+    }
+
+    /// The first element of this name.
+    pub(super) fn element(&self, name: &str) -> Option<&Element> {
+        self.elements.iter().find(|element| element.name == name)
     }
 }
 
-pub(super) fn attribute(line: &str, name: &str) -> Option<String> {
-    let from = line.find(&format!(" {name}=\""))? + name.len() + 3;
-    let to = from + line[from..].find('"')?;
-    Some(unescaped(&line[from..to]))
+/// What stands before the appended data, and the data. These are no XML, so the two are parted first.
+fn parts(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let tag = b"<AppendedData";
+    let at = bytes.windows(tag.len()).position(|window| window == tag)?;
+    let (head, rest) = bytes.split_at(at);
+    let end = rest.iter().position(|byte| *byte == b'>')? + 1;
+    let (tag, rest) = rest.split_at(end);
+    let tag = elements(std::str::from_utf8(tag).ok()?).ok()?;
+    let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
+    let is_raw = tag.first()?.attribute("encoding") == Some("raw") && rest[start] == b'_';
+    is_raw.then_some((head, &rest[start + 1..]))
 }
 
 fn block(blocks: &[u8], offset: usize, kind: &str) -> Option<Vec<f64>> {
@@ -152,5 +171,44 @@ mod tests {
         );
         std::fs::write(&path, b"noise").unwrap();
         assert!(read_vtp(&path).is_err());
+    }
+
+    /// The same file as another program might have laid it out.
+    #[test]
+    fn the_layout_of_the_text_does_not_matter() {
+        let scratch = Scratch::new("read-layout");
+        let path = scratch.path("points.vtp");
+        let points = [DVec2::new(1.0, 2.0), DVec2::new(-3.0, 4.0)];
+        let mut frame = Frame::wanting_all();
+        frame.field("a \"b\" & <c>", "m", FieldRef::Scalar(&[0.5, 0.25]));
+        super::super::write_vtp(&path, &Location::Points(FieldRef::Vector2(&points)), &frame, 0.125).unwrap();
+        let read = read_vtp(&path).unwrap();
+        assert_eq!(read.magnitude("a \"b\" & <c>").unwrap(), [0.5, 0.25]);
+        let bytes = fs::read(&path).unwrap();
+        let at = bytes.windows(13).position(|window| window == b"<AppendedData").unwrap();
+        let head = std::str::from_utf8(&bytes[..at]).unwrap();
+        let head = head
+            .replace("?>\n", "?>\n<!-- <DataArray Name=\"none\" offset=\"7\"/> -->")
+            .replace("/>\n<DataArray", "  />\t<DataArray")
+            .replace("type=\"Float64\" NumberOfComponents=\"3\"", "NumberOfComponents='3'\n  type='Float64'")
+            .replace(" format=\"appended\"", "\n format = 'appended'")
+            .replace("0.125<", "\n  0.125\n<");
+        let rest = String::from("<AppendedData\n encoding = 'raw' >  _").into_bytes();
+        let data = &bytes[at + b"<AppendedData encoding=\"raw\">\n_".len()..];
+        let same = [head.as_bytes(), &rest, data].concat();
+        assert_eq!(Content::of(&same, "PolyData").unwrap().time, 0.125);
+        fs::write(&path, &same).unwrap();
+        assert_eq!(read_vtp(&path).unwrap(), read);
+        let refused = |from: &str, to: &str| {
+            let head = head.replace(from, to);
+            Content::of(&[head.as_bytes(), &rest, data].concat(), "PolyData").err().unwrap()
+        };
+        assert!(refused("LittleEndian", "BigEndian").contains("little-endian"));
+        assert!(refused("UInt64", "UInt32").contains("UInt64"));
+        assert!(
+            refused("byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order").contains("uncompressed")
+        );
+        assert!(refused("</FieldData>", "</FieldDate>").contains("FieldDate"));
+        assert_eq!(refused("offset=\"0\"", "offset=\"99999\""), "it ends within an array");
     }
 }

@@ -1,6 +1,6 @@
 //! Reading back `.vti` files that this crate wrote, for figures made after a run.
 
-use super::read::{Content, attribute, magnitude};
+use super::read::{Content, magnitude};
 use crate::error::IoError;
 use std::path::Path;
 
@@ -62,20 +62,20 @@ impl GridFields {
 /// # Errors
 /// When the file cannot be read, is of another kind, or a field does not have one value per cell.
 pub fn read_vti(path: &Path) -> Result<GridFields, IoError> {
-    let Content { head, time, arrays } = Content::read(path, "ImageData")?;
+    let content = Content::read(path, "ImageData")?;
     let fail = |reason: String| IoError::new("read", path, reason);
-    let line = head.lines().find(|line| line.starts_with("<ImageData ")).unwrap_or_default();
+    let image = content.element("ImageData").ok_or_else(|| fail("it has no ImageData".to_owned()))?;
     let three = |name: &str| {
-        let found = numbers::<f64, 3>(line, name).filter(|three| three.iter().all(|x| x.is_finite()));
+        let found = image.numbers::<f64, 3>(name).filter(|three| three.iter().all(|x| x.is_finite()));
         found.ok_or_else(|| fail(format!("its `{name}` is not three finite numbers")))
     };
     let (origin, spacing) = (three("Origin")?, three("Spacing")?);
-    let extent = numbers::<usize, 6>(line, "WholeExtent").filter(|e| [e[0], e[2], e[4]] == [0; 3]);
-    let extent = extent.ok_or_else(|| fail("its `WholeExtent` is not the points from 0 on".to_owned()))?;
+    let extent = image.numbers::<usize, 6>("WholeExtent").filter(|e| [e[0], e[2], e[4]] == [0; 3]);
+    let extent = extent.ok_or_else(|| fail("its `WholeExtent` does not begin at 0".to_owned()))?;
     // A flat image is one layer of cells.
     let cells = [extent[1], extent[3], extent[5].max(1)];
     let count = cells[0].checked_mul(cells[1]).and_then(|n| n.checked_mul(cells[2]));
-    for (name, components, values) in &arrays {
+    for (name, components, values) in &content.arrays {
         if count.and_then(|count| count.checked_mul(*components)) != Some(values.len()) {
             let [x, y, z] = cells;
             let found = values.len();
@@ -84,14 +84,7 @@ pub fn read_vti(path: &Path) -> Result<GridFields, IoError> {
             return Err(fail(reason));
         }
     }
-    Ok(GridFields { time, origin, spacing, cells, fields: arrays })
-}
-
-/// Exactly `N` numbers of an attribute.
-fn numbers<T: std::str::FromStr, const N: usize>(line: &str, name: &str) -> Option<[T; N]> {
-    let text = attribute(line, name)?;
-    let parsed: Option<Vec<T>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-    parsed?.try_into().ok()
+    Ok(GridFields { time: content.time, origin, spacing, cells, fields: content.arrays })
 }
 
 #[cfg(test)]
@@ -156,10 +149,10 @@ mod tests {
         let scratch = Scratch::new("read-vti-other");
         let path = scratch.path("a.vti");
         std::fs::write(&path, b"noise").unwrap();
-        assert!(read_vti(&path).unwrap_err().reason.contains("no file of raw appended data"));
+        assert!(read_vti(&path).unwrap_err().reason.contains("not a file with raw appended data"));
         let frame = Frame::wanting_all();
         write_vtp(&path, &Location::Points(FieldRef::Vector2(&[DVec2::ZERO])), &frame, 0.0).unwrap();
-        assert!(read_vti(&path).unwrap_err().reason.contains("it holds no ImageData"));
+        assert!(read_vti(&path).unwrap_err().reason.contains("it does not hold ImageData"));
         let mut frame = Frame::wanting_all();
         frame.field("density", "kg/m³", FieldRef::Scalar(&[1.0, 2.0]));
         let grid = Location::Grid { origin: [0.0; 3], spacing: [1.0; 3], cells: [2, 1, 1] };
@@ -171,6 +164,6 @@ mod tests {
         std::fs::write(&path, bytes).unwrap();
         let reason = read_vti(&path).unwrap_err().reason;
         assert!(reason.contains("`density` has 2 values of 1 for 3 × 1 × 1 cells"), "{reason}");
-        assert!(crate::vtk::read_vtp(&path).unwrap_err().reason.contains("it holds no PolyData"));
+        assert!(crate::vtk::read_vtp(&path).unwrap_err().reason.contains("it does not hold PolyData"));
     }
 }

@@ -152,11 +152,6 @@ pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// The reverse of [`escaped`].
-pub(super) fn unescaped(text: &str) -> String {
-    text.replace("&gt;", ">").replace("&lt;", "<").replace("&quot;", "\"").replace("&amp;", "&")
-}
-
 /// Numbers with spaces between.
 pub(super) fn numbers(values: &[f64]) -> String {
     values.iter().map(|&value| shortest(value)).collect::<Vec<_>>().join(" ")

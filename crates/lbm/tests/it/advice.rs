@@ -76,10 +76,16 @@ fn an_operator_is_recommended_with_the_reason() {
     setup.viscosity *= 0.01;
     setup.expected_speed = 40.0 * setup.viscosity;
     let advice = told(setup.clone());
-    assert!(advice[1].contains("bears a grid Reynolds number of 11 here and meets"), "{advice:?}");
-    assert!(advice[1].contains("Regularised bears 80") && advice[1].contains("slips"), "{advice:?}");
+    assert!(
+        advice[1].contains("stable up to a grid Reynolds number of 11 here, and this flow has"),
+        "{advice:?}"
+    );
+    assert!(
+        advice[1].contains("Regularised is stable up to 80") && advice[1].contains("slips"),
+        "{advice:?}"
+    );
     let mut free = Setup::<D2>::new([20, 20, 1], 1.0, 1.0, 0.6);
-    assert!(told(free.clone())[0].contains("Kumar is nearer in free flow"));
+    assert!(told(free.clone())[0].contains("Kumar is more accurate in free flow"));
     free.operator = Operator::KUMAR;
     assert!(told(free)[0].starts_with("operator Kumar suits"));
     // A lid with a profile and a wall with slip are walls.

@@ -1,4 +1,4 @@
-//! What no frame may change: samples in a cell that is shifted, turned, or turning.
+//! Invariance under a change of frame: samples in a cell that is shifted, turned, or turning.
 
 use super::Effort;
 use super::lattices::{Touching, name, refused};

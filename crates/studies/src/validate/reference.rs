@@ -1,34 +1,38 @@
 //! Reference data: columns of the CSV texts of `granular-validation-data`.
 
+use granular_io::{CsvRow, csv_rows};
+
 /// The numbers of some columns, row by row; a cell that is no number is `NaN`.
-///
-/// Only the last column of a reference may hold text with commas.
 pub(crate) fn columns<const N: usize>(text: &str, names: [&str; N]) -> Vec<[f64; N]> {
-    let mut lines = text.lines();
-    let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let places = names.map(|name| {
-        header.iter().position(|column| *column == name).expect("reference data has the columns of its case")
-    });
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
-        places.map(|place| cells.get(place).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN))
-    };
-    lines.filter(|line| !line.is_empty()).map(row).collect()
+    let (header, rows) = parts(text);
+    let places = names.map(|name| place(&header, name));
+    let number =
+        |row: &CsvRow, place| row.field(place).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN);
+    rows.map(|row| places.map(|place| number(&row, place))).collect()
 }
 
 /// The number in `column` of the row whose first cell is `name`.
 pub(super) fn named(text: &str, name: &str, column: &str) -> f64 {
-    let index = text.lines().skip(1).position(|line| line.split(',').next() == Some(name));
+    let index = parts(text).1.position(|row| row.field(0) == Some(name));
     columns(text, [column])[index.expect("reference data has the rows of its case")][0]
 }
 
 /// The texts of a column, row by row.
 pub(super) fn named_texts(text: &str, column: &str) -> Vec<String> {
-    let mut lines = text.lines();
-    let header = lines.next().unwrap_or_default();
-    let place = header.split(',').position(|name| name == column);
-    let place = place.expect("reference data has the columns of its case");
-    lines.map(|line| line.split(',').nth(place).unwrap_or_default().to_owned()).collect()
+    let (header, rows) = parts(text);
+    let place = place(&header, column);
+    rows.map(|row| row.field(place).unwrap_or_default().to_owned()).collect()
+}
+
+/// The header and the rows below it.
+fn parts(text: &str) -> (CsvRow, impl Iterator<Item = CsvRow>) {
+    let mut rows = csv_rows(text);
+    (rows.next().expect("reference data has a header"), rows)
+}
+
+fn place(header: &CsvRow, name: &str) -> usize {
+    let place = header.fields().position(|column| column == name);
+    place.expect("reference data has the columns of its case")
 }
 
 #[cfg(test)]
@@ -41,5 +45,6 @@ mod tests {
         assert_eq!(columns(text, ["b", "a"])[0], [2.0, 1.0]);
         assert!(columns(text, ["b"])[1][0].is_nan());
         assert_eq!(named(text, "second", "a"), 3.0);
+        assert_eq!(named_texts(text, "source"), ["here, there", ""]);
     }
 }

@@ -40,7 +40,7 @@ impl NamedMaterials {
             let known: Vec<&str> = self.ids.keys().map(String::as_str).collect();
             let hint = nearest(name, known.iter().copied());
             let allowed = format!("a material of this scene: {}", known.join(", "));
-            problems.add(path, format!("`{name}`, which is no material of this scene"), allowed, hint);
+            problems.add(path, format!("`{name}`, which is not a material of this scene"), allowed, hint);
         }
         found.flatten()
     }

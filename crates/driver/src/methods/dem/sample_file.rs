@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::machine;
 use granular_core::{Dim, Spin, Vector};
 use granular_dem::{Dem, Grain, MaterialId};
-use granular_io::write_atomically;
+use granular_io::{CsvRow, csv_row, csv_rows, write_atomically};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -51,7 +51,7 @@ impl<D: Dim> SavedSample<D> {
         if D::AXES.len() == 3 { "space" } else { "plane" }
     }
 
-    fn head() -> String {
+    fn head() -> Vec<String> {
         let axes = |name: &str, unit: &str| {
             D::AXES.iter().map(|axis| format!("{name}{axis} [{unit}]")).collect::<Vec<_>>()
         };
@@ -59,8 +59,8 @@ impl<D: Dim> SavedSample<D> {
             2 => vec!["spin [rad/s]".to_owned()],
             _ => axes("spin_", "rad/s"),
         };
-        let columns = [axes("", "m"), vec!["radius [m]".to_owned()], axes("velocity_", "m/s"), spin];
-        columns.concat().join(",") + ",material"
+        let radius = vec!["radius [m]".to_owned()];
+        [axes("", "m"), radius, axes("velocity_", "m/s"), spin, vec!["material".to_owned()]].concat()
     }
 
     /// The text of the file.
@@ -74,17 +74,15 @@ impl<D: Dim> SavedSample<D> {
                 Some(Round::Half) => writeln!(body, "# half cylinder radius {width} height {height}"),
             };
         }
-        let _ = writeln!(body, "{}", Self::head());
+        body += &csv_row(Self::head());
         for grain in &self.grains {
             let spin = grain.spin.components();
             let spin = if D::AXES.len() == 2 { &spin[2..] } else { &spin[..] };
             let vector = |v: D::Vec| (0..D::N).map(|axis| v.component(axis)).collect::<Vec<f64>>();
             let numbers =
                 [&vector(grain.position)[..], &[grain.radius], &vector(grain.velocity), spin].concat();
-            for number in numbers {
-                let _ = write!(body, "{number:?},");
-            }
-            let _ = writeln!(body, "{}", self.materials[grain.material.index()]);
+            let material = self.materials[grain.material.index()].clone();
+            body += &csv_row(numbers.iter().map(|number| format!("{number:?}")).chain([material]));
         }
         format!("{FIRST_LINE}, checksum {:016x}\n{body}", xxhash_rust::xxh3::xxh3_64(body.as_bytes()))
     }
@@ -121,28 +119,27 @@ impl<D: Dim> SavedSample<D> {
             }
         }
         let mut sample = Self { grains: Vec::new(), materials: Vec::new(), column: None };
-        let (mut dimension, mut head) = (false, false);
+        let mut dimension = false;
         for (k, line) in body.lines().enumerate() {
+            let Some(comment) = line.strip_prefix('#') else { continue };
             let place = |what: &str| format!("line {}: {what}", k + 2);
-            if let Some(comment) = line.strip_prefix('#') {
-                match comment.trim() {
-                    known @ ("plane" | "space") if known == Self::dimension() => dimension = true,
-                    other @ ("plane" | "space") => {
-                        return Err(bad(place(&format!("grains in the {other}")), Self::dimension()));
-                    }
-                    other if SIZES.iter().any(|(begin, ..)| other.starts_with(begin)) => {
-                        sample.column = Some(column(other, &place)?);
-                    }
-                    _ => {}
+            match comment.trim() {
+                known @ ("plane" | "space") if known == Self::dimension() => dimension = true,
+                other @ ("plane" | "space") => {
+                    return Err(bad(place(&format!("grains in the {other}")), Self::dimension()));
                 }
-            } else if !head {
-                if line != Self::head() {
-                    return Err(bad(place(&format!("`{line}`")), format!("`{}`", Self::head())));
+                other if SIZES.iter().any(|(begin, ..)| other.starts_with(begin)) => {
+                    sample.column = Some(column(other, &place)?);
                 }
-                head = true;
-            } else if !line.trim().is_empty() {
-                sample.push(line, &place)?;
+                _ => {}
             }
+        }
+        let mut rows = csv_rows(body);
+        if let Some(head) = rows.next().filter(|head| head.fields().ne(Self::head())) {
+            return Err(bad(told(&head), format!("`{}`", Self::head().join(","))));
+        }
+        for row in rows {
+            sample.push(&row)?;
         }
         match (dimension, sample.grains.is_empty()) {
             (false, _) => Err(bad("no line with the dimension", format!("`# {}`", Self::dimension()))),
@@ -151,27 +148,29 @@ impl<D: Dim> SavedSample<D> {
         }
     }
 
-    /// Reads the line of a grain.
-    fn push(&mut self, line: &str, place: &dyn Fn(&str) -> String) -> Result<(), BadSample> {
-        let (numbers, material) = line.rsplit_once(',').unwrap_or(("", line));
-        let values: Result<Vec<f64>, _> = numbers.split(',').map(str::parse::<f64>).collect();
-        let count = Self::head().split(',').count() - 1;
+    /// Reads the row of a grain.
+    fn push(&mut self, row: &CsvRow) -> Result<(), BadSample> {
+        let count = Self::head().len() - 1;
+        let wanted = || bad(told(row), format!("{count} finite numbers and the name of a material"));
+        let mut fields = row.fields();
+        let material = fields.next_back().unwrap_or_default();
+        let values: Result<Vec<f64>, _> = fields.map(str::parse::<f64>).collect();
         let values =
             values.ok().filter(|values| values.len() == count && values.iter().all(|v| v.is_finite()));
-        let wanted = || format!("{count} finite numbers and the name of a material");
-        let values = values.ok_or_else(|| bad(place(&format!("`{line}`")), wanted()))?;
+        let values = values.ok_or_else(wanted)?;
         let (position, rest) = values.split_at(D::N);
         let (radius, rest) = (rest[0], &rest[1..]);
         let (velocity, spin) = rest.split_at(D::N);
         if radius <= 0.0 {
-            return Err(bad(place(&format!("a radius of {radius} m")), "above 0"));
+            return Err(bad(format!("line {}: a radius of {radius} m", line(row)), "above 0"));
         }
         let known = self.materials.iter().position(|name| name == material);
         let id = known.unwrap_or(self.materials.len());
         if known.is_none() {
             self.materials.push(material.to_owned());
         }
-        let id = u8::try_from(id).map_err(|_| bad(place("too many materials"), "at most 256"))?;
+        let id = u8::try_from(id)
+            .map_err(|_| bad(format!("line {}: too many materials", line(row)), "at most 256"))?;
         let vector = |values: &[f64]| D::Vec::from_slice(values).expect("one number per axis was counted");
         let spin = if let [z] = spin {
             D::Spin::about_z(*z)
@@ -184,6 +183,16 @@ impl<D: Dim> SavedSample<D> {
         self.grains.push(grain);
         Ok(())
     }
+}
+
+/// The line of a row in the file, whose first one is not part of the table.
+fn line(row: &CsvRow) -> usize {
+    row.line() + 1
+}
+
+/// A row as an error shows it.
+fn told(row: &CsvRow) -> String {
+    format!("line {}: `{}`", line(row), row.fields().collect::<Vec<_>>().join(","))
 }
 
 /// How a line with a size begins, the name of the width, and what it is.
@@ -248,6 +257,28 @@ mod tests {
         assert!(said(&without_sum.replace(",glass", ",,glass")).starts_with("line 5: `0.1,"));
         assert!(said(&without_sum.replace("width 0.3", "width -1")).starts_with("line 3: `column"));
         assert!(said(&without_sum.replace("radius [m]", "radius [mm]")).starts_with("line 4: `x [m]"));
+        assert!(said(&without_sum.replace(",glass", ",-glass,steel")).starts_with("line 5: `0.1,"));
+        assert_eq!(
+            said(&without_sum.replace("0.1,0.30000000000000004,0.000", "0.1,0.3,-0.000")),
+            "line 5: a radius of -0.0003333333333333333 m"
+        );
         assert_eq!(said(&format!("{FIRST_LINE}\n# plane\n")), "no grains");
+    }
+
+    /// Files that were saved before are read with their checksum, and saved again to the same bytes.
+    #[test]
+    fn the_text_of_a_sample_does_not_change() {
+        let expected = "# granular sample 1, checksum 955a6234f0aabe5e\n# plane\n# column width 0.3 height 0.3333333333333333\n\
+            x [m],y [m],radius [m],velocity_x [m/s],velocity_y [m/s],spin [rad/s],material\n\
+            0.1,0.30000000000000004,0.0003333333333333333,0.0,0.0,-0.010000000000000002,glass\n\
+            1e-300,0.30000000000000004,0.0003333333333333333,0.0,0.0,-1e-301,steel\n";
+        assert_eq!(sample().text(), expected);
+    }
+
+    #[test]
+    fn a_material_may_have_a_comma_in_its_name() {
+        let named =
+            SavedSample { materials: vec!["glass, wet".to_owned(), "steel \"4\"".to_owned()], ..sample() };
+        assert_eq!(SavedSample::parse(&named.text()), Ok(named));
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn actions<D: Dim>(
             let hint = nearest(stage, known.iter().copied());
             problems.add(
                 format!("{path}.opens"),
-                format!("`{stage}`, which is no stage of this scene"),
+                format!("`{stage}`, which is not a stage of this scene"),
                 format!("a stage of this scene: {}", known.join(", ")),
                 hint,
             );

@@ -41,7 +41,7 @@ const STRESSES: [Component; 6] = [
 /// Names, units and meanings; the unit of volumes is that of space.
 const NUMBERS: &[(&str, &str, &str)] = &[
     (BULK_DENSITY, "1", "share of the grains in their Voronoi cells, without the free surface"),
-    (BULK_GRAINS, "1", "grains whose Voronoi cell is no free surface"),
+    (BULK_GRAINS, "1", "grains whose Voronoi cell is not at the free surface"),
 ];
 const FIELDS: &[(&str, &str, &str)] = &[
     (LOCAL_DENSITY, "1", "share of the grain in its Voronoi cell"),

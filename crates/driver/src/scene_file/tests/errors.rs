@@ -13,11 +13,12 @@ fn an_unknown_key_is_shown_with_the_allowed_ones() {
     let scene = SceneText::new("examples/x/scene.ron", "{\n    \"glass\": (frictoin: 0.5),\n}");
     let problem = scene.parse::<BTreeMap<String, Material>>().unwrap_err();
     let shown = r#"error: unknown key `frictoin` in a material
-  --> examples/x/scene.ron:2:15
-   |
- 2 |     "glass": (frictoin: 0.5),
-   |               ^^^^^^^^ allowed: density, friction, restitution, normal_stiffness
-   = help: did you mean `friction`?"#;
+ --> examples/x/scene.ron:2:15
+  |
+2 |     "glass": (frictoin: 0.5),
+  |               ^^^^^^^^ allowed: density, friction, restitution, normal_stiffness
+  |
+  = help: did you mean `friction`?"#;
     assert_eq!(problem.to_string(), shown);
     assert_eq!(problem.place.path.as_deref(), Some("glass.frictoin"));
 }
@@ -155,7 +156,7 @@ fn keys_written_twice_are_shown_with_both_places() {
 #[test]
 fn a_value_without_sense_is_found_by_its_path() {
     let problem = SceneProblem::at_path("sample.aspect_ratio", -0.8, "above 0", "a column has a height");
-    let bare = "error: `sample.aspect_ratio` is -0.8\n  --> sample.aspect_ratio\n   = allowed: above 0\n   = help: a column has a height";
+    let bare = "error: `sample.aspect_ratio` is -0.8\n --> sample.aspect_ratio\n  = allowed: above 0\n  = help: a column has a height";
     assert_eq!(problem.to_string(), bare);
     let located = problem.located_in(&sample());
     assert_eq!((located.place.line, located.place.column), (Some(4), Some(50)));
@@ -184,6 +185,33 @@ fn long_lines_and_control_characters_stay_readable() {
     assert!(snippet.text.chars().count() < 300 && snippet.text.starts_with('…'));
     assert!(!problem.to_string().contains('\u{1b}'));
     assert_eq!(snippet.text.chars().nth(snippet.before), Some('x'));
+    // The line that is shown is cut, the place is that in the file.
+    let shown = problem.to_string();
+    assert!(shown.contains(" --> scene.ron:1:50002\n") && shown.contains("^"), "{shown}");
+}
+
+#[test]
+fn wide_characters_and_colours_keep_the_mark_in_its_place() {
+    let problem = SceneText::new("scene.ron", "{ \"ガラス\": (frictoin: 0.5) }");
+    let problem = problem.parse::<BTreeMap<String, Material>>().unwrap_err();
+    // Three characters of two columns each stand before the mark.
+    let shown = problem.to_string();
+    let column = |line: &str, mark: char| {
+        let before = line.split(mark).next().unwrap();
+        before.chars().map(|c| if c.is_ascii() { 1 } else { 2 }).sum::<usize>()
+    };
+    let lines: Vec<&str> = shown.lines().collect();
+    assert_eq!(column(lines[4], '^'), column(lines[3], 'f'), "{shown}");
+    let coloured = problem.in_colour();
+    assert!(coloured.contains("\u{1b}[") && !shown.contains('\u{1b}'));
+    // In colour it says the same.
+    let mut bare = String::new();
+    let mut rest = coloured.as_str();
+    while let Some((text, code)) = rest.split_once('\u{1b}') {
+        bare.push_str(text);
+        rest = code.split_once('m').map_or("", |(_, after)| after);
+    }
+    assert_eq!(bare + rest, shown);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::{Blow, Plan, Strength, Struck};
 use crate::validate::reference::named;
 use crate::validate::row::{Measure, Rows, Tier};
-use granular_driver::statistics::{mean_and_error, power_law};
+use granular_driver::statistics::{PowerLaw, mean_and_error};
 use granular_validation_data::SLOPE_IMPACT;
 
 /// Why numbers of small piles differ.
@@ -59,9 +59,17 @@ impl Sweep<'_> {
             listed(&points),
             piles.join(" ")
         );
-        self.claim("exponent of L_f over E_0 below the crossover", low.1, "length exponent low", 0.03, &note);
-        self.claim("exponent of L_f over E_0 above the crossover", high.1, "length exponent high", 0.05, "");
-        let meet = (low.0 / high.0).powf(1.0 / (high.1 - low.1));
+        let note = format!("{}; {note}", of_fit(&low));
+        self.claim(
+            "exponent of L_f over E_0 below the crossover",
+            low.exponent,
+            "length exponent low",
+            0.03,
+            &note,
+        );
+        let metric = "exponent of L_f over E_0 above the crossover";
+        self.claim(metric, high.exponent, "length exponent high", 0.05, &of_fit(&high));
+        let meet = low.meets(&high).unwrap_or(f64::NAN);
         let note = "energy over potential energy where both laws meet; the thesis has 40 +- 15 m g d";
         self.claim("crossover of the run-out", meet, "crossover", CROSSOVER * 15.0 / 40.0, note);
     }
@@ -94,15 +102,12 @@ impl Sweep<'_> {
         let half_lives = of(self, &|one| one.impact.half_life());
         let left = of(self, &|one| Some(one.impact.duration_left()));
         let note = "over the energy along x that is left then, above the crossover";
-        let [tau, duration] = [power_law(&half_lives), power_law(&left)];
-        self.claim("exponent of the half-life after the transient", tau.1, "half-life exponent", 0.03, note);
-        self.claim(
-            "exponent of the duration after the transient",
-            duration.1,
-            "duration exponent",
-            0.02,
-            note,
-        );
+        let [tau, duration] = [&half_lives, &left].map(|points| PowerLaw::through(points));
+        let of = |law: &PowerLaw| format!("{}; {note}", of_fit(law));
+        let metric = "exponent of the half-life after the transient";
+        self.claim(metric, tau.exponent, "half-life exponent", 0.03, &of(&tau));
+        let metric = "exponent of the duration after the transient";
+        self.claim(metric, duration.exponent, "duration exponent", 0.02, &of(&duration));
         let ratios: Vec<f64> = left.iter().zip(&half_lives).map(|(t, tau)| t.1 / tau.1).collect();
         let (ratio, _) = mean_and_error(&ratios);
         self.claim("duration after the transient over half-life", ratio, "duration over half-life", 0.4, "");
@@ -159,9 +164,14 @@ fn duration(one: &Struck) -> f64 {
 }
 
 /// Power laws below and above the crossover.
-fn split(points: &[(f64, f64)]) -> [(f64, f64); 2] {
+fn split(points: &[(f64, f64)]) -> [PowerLaw; 2] {
     let (low, high): (Vec<_>, Vec<_>) = points.iter().partition(|point| point.0 < CROSSOVER);
-    [power_law(&low), power_law(&high)]
+    [low, high].map(|points| PowerLaw::through(&points))
+}
+
+/// The uncertainty of a fitted exponent, for notes.
+fn of_fit(law: &PowerLaw) -> String {
+    format!("standard error of the fit {:.3}", law.error)
 }
 
 fn listed(points: &[(f64, f64)]) -> String {

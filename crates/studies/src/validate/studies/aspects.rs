@@ -4,7 +4,7 @@ use super::{Column, NEAR, RESIDUAL, listed};
 use crate::validate::recorded::Recorded;
 use crate::validate::reference::columns as reference;
 use crate::validate::row::{Measure, Rows, Tier};
-use granular_driver::statistics::order;
+use granular_driver::statistics::PowerLaw;
 use granular_validation_data::COLUMN_STUDIES;
 
 /// Aspect ratio at which the run-out turns from a line to a power \[Kumar2014, eq. 4.6\].
@@ -56,16 +56,20 @@ fn run_outs(rows: &mut Rows, of: &str, random: &[Pair<'_>]) {
     };
     let line = part(0.3, SWITCH);
     let metric = format!("{of}: exponent of the run-out from a = 0.4 to {SWITCH}");
-    rows.add(Measure::absolute(Tier::Thesis, metric, order(&line), 1.0, 0.1).claim().note(format!(
-        "linear; run-out over a {}; the column of 0.2 is left out: its front is a few disks",
+    let law = PowerLaw::through(&line);
+    rows.add(Measure::absolute(Tier::Thesis, metric, law.exponent, 1.0, 0.1).claim().note(format!(
+        "standard error of the fit {:.3}; linear; run-out over a {}; the column of 0.2 is left out: its front is a few disks",
+        law.error,
         listed(&line.iter().map(|(a, run_out)| run_out / a).collect::<Vec<_>>())
     )));
     let power = part(3.0, f64::INFINITY);
     let metric = format!("{of}: exponent of the run-out from a = 4 on");
-    rows.add(Measure::absolute(Tier::Thesis, metric, order(&power), 0.625, 0.125).claim().note(
-        "claim 0.5 to 0.75; points of the thesis 0.54, experiment 0.62, laws 2/3 to 0.7; the tip is a layer of a few disks, whose \
-         height is a smaller share of a low deposit when there are more of them",
-    ));
+    let law = PowerLaw::through(&power);
+    rows.add(Measure::absolute(Tier::Thesis, metric, law.exponent, 0.625, 0.125).claim().note(format!(
+        "standard error of the fit {:.3}; claim 0.5 to 0.75; points of the thesis 0.54, experiment 0.62, laws 2/3 to 0.7; the \
+         tip is a layer of a few disks, whose height is a smaller share of a low deposit when there are more of them",
+        law.error,
+    )));
 }
 
 /// Value at x of the power law through the two points about it, or the nearest two.
@@ -111,9 +115,9 @@ fn heights(rows: &mut Rows, of: &str, random: &[Pair<'_>]) {
     let points: Vec<(f64, f64)> =
         heaps.map(|(_, fallen)| (fallen.aspect_ratio(), fallen.last("height") / fallen.width)).collect();
     let metric = format!("{of}: exponent of the height from a = 1 on");
-    rows.add(
-        Measure::absolute(Tier::Thesis, metric, order(&points), 0.33, 0.06)
-            .claim()
-            .note("points of figure 4.7 give 0.30 to 0.38 (its equation 4.7 misprints 2/3)"),
-    );
+    let law = PowerLaw::through(&points);
+    rows.add(Measure::absolute(Tier::Thesis, metric, law.exponent, 0.33, 0.06).claim().note(format!(
+        "standard error of the fit {:.3}; points of figure 4.7 give 0.30 to 0.38 (its equation 4.7 misprints 2/3)",
+        law.error
+    )));
 }

@@ -121,7 +121,7 @@ impl Reader<'_> {
     ) -> Option<Body<D>> {
         let place = format!("{path}.path");
         let ShapeSpec::Ball { centre, radius } = shape else {
-            let value = "the path of a shape that is no Ball";
+            let value = "the path of a shape that is not a Ball";
             self.problems.add(place, value, "a path of a Ball", "what turns in its place has a spin instead");
             return None;
         };
