@@ -5,7 +5,7 @@
 //! ```
 
 use granular_lbm::granular_core::{D2, Solver, glam::DVec2};
-use granular_lbm::{Lbm2, Obstacle, Setup, Shape};
+use granular_lbm::{Lbm2, Obstacle, Setup, SolidShape};
 use std::error::Error;
 
 const CELLS: usize = 40;
@@ -13,13 +13,13 @@ const SPACING: f64 = 1e-3;
 const DRIVE: f64 = 1e-7;
 
 /// A shape says what lies inside and gives a box around it; where the surface cuts between two cells is then
-/// found by bisection. An own [`Shape::crossing`] would be faster.
+/// found by bisection. An own [`SolidShape::crossing`] would be faster.
 struct Ellipse {
     centre: DVec2,
     half_axes: DVec2,
 }
 
-impl Shape<D2> for Ellipse {
+impl SolidShape<D2> for Ellipse {
     fn contains(&self, point: DVec2) -> bool {
         ((point - self.centre) / self.half_axes).length_squared() <= 1.0
     }
