@@ -19,7 +19,7 @@ pub struct Contact<D: Dim> {
     pub shift: [i8; 3],
     /// Unit vector from the second body to the first.
     pub normal: D::Vec,
-    /// Overlap \[m\].
+    /// Overlap \[m\]; negative where a law with a reach acts on surfaces that are apart.
     pub overlap: f64,
     /// Force along the normal \[N\].
     pub normal_force: f64,
@@ -29,6 +29,16 @@ pub struct Contact<D: Dim> {
     pub torque: D::Spin,
     /// Energy stored in the springs \[J\].
     pub energy: f64,
+    /// Tangential spring as `normal x` the displacement of the first body past the second \[m\]; zero for laws without one.
+    /// In this form it is the same seen from either body.
+    pub spring: D::Spin,
+}
+
+impl<D: Dim> Contact<D> {
+    /// Displacement \[m\] of the first body past the second that the tangential spring holds.
+    pub fn tangential_displacement(&self) -> D::Vec {
+        D::turn(self.spring, self.normal)
+    }
 }
 
 /// The second body of a contact.
@@ -38,6 +48,20 @@ pub enum Partner {
     Grain(usize),
     /// A wall, by its index.
     Wall(usize),
+}
+
+/// Overlap between steps \[m\].
+pub(crate) fn overlap_of<D: Dim, L: ContactLaw<D>>(kinematics: &Kinematics<D>) -> f64 {
+    if L::REACHES { -kinematics.gap } else { kinematics.overlap }
+}
+
+/// Whether there is a contact between steps.
+pub(crate) fn ongoing<D: Dim, L: ContactLaw<D>>(
+    law: &L,
+    kinematics: &Kinematics<D>,
+    memory: &L::Memory,
+) -> bool {
+    kinematics.overlap > 0.0 || (L::REACHES && law.acts(kinematics.gap, memory))
 }
 
 /// A contact as outputs see it.
@@ -55,10 +79,11 @@ pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
         branch,
         shift: [0; 3],
         normal: kinematics.normal,
-        overlap: kinematics.overlap,
+        overlap: overlap_of::<D, L>(kinematics),
         normal_force: load.normal,
         force: push_of::<D, L>(&load, kinematics.normal),
         torque: load.rolling,
         energy,
+        spring: law.spring(kinematics, &memory),
     }
 }

@@ -1,7 +1,10 @@
 //! The solver: set-up, the step, and changes between stages.
 
 mod changes;
+mod single;
 mod step;
+
+pub use single::OtherBody;
 
 use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
@@ -9,9 +12,9 @@ use crate::grains::{Grain, Grains};
 use crate::inlets::InletsAndOutlets;
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
-use crate::material::{MaterialId, Materials, SetupError};
+use crate::material::{MaterialId, Materials, PairProperties, SetupError};
 use crate::periodic::PeriodicCell;
-use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::setup::{LeverArm, Options, Setup, SpringTurning, check_options, check_stiffness};
 use crate::shaking::Shaken;
 use crate::view::View;
 use crate::walls::Wall;
@@ -56,6 +59,9 @@ pub struct Dem<D: Dim> {
     /// The last step taken \[s\].
     pub(crate) last_dt: f64,
     custom_law: bool,
+    /// Whether what bounds the step changed since the last one was checked.
+    pub(crate) unchecked: bool,
+    any_step: bool,
     skin: f64,
     /// Reach of the present lists \[m\].
     pub(crate) reach: f64,
@@ -80,13 +86,15 @@ impl<D: Dim> Dem<D> {
         Self::build(setup, law, false)
     }
 
-    /// A simulation with a contact law of the caller's own.
+    /// A simulation with a contact law of the caller's own, a value with its own parameters. What the law takes from
+    /// materials, if anything, is up to [`ContactLaw::for_pair`].
     ///
     /// # Errors
     /// When a value is out of range.
-    pub fn with_law<L: ContactLaw<D>>(setup: Setup<D>) -> Result<Self, SetupError> {
+    pub fn with_law<L: ContactLaw<D>>(setup: Setup<D>, law: L) -> Result<Self, SetupError> {
         let law = |materials: &Materials, options: &Options, blocks| -> Box<dyn Pairs<D>> {
-            Box::new(Contacts::<D, L>::new(materials, options.tension, blocks))
+            let between = move |pair: &PairProperties, tension| law.for_pair(pair, tension);
+            Box::new(Contacts::<D, L>::new(materials, options.tension, blocks, Box::new(between)))
         };
         Self::build(setup, law, true)
     }
@@ -130,6 +138,8 @@ impl<D: Dim> Dem<D> {
             steps: 0,
             last_dt: 0.0,
             custom_law,
+            unchecked: true,
+            any_step: false,
             largest: 0.0,
             travel: 0.0,
         };
@@ -156,6 +166,26 @@ impl<D: Dim> Dem<D> {
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
         self.grains.turns
+    }
+
+    /// Lets [`advance`](Solver::advance) take steps beyond the [limit of a contact](Dem::contact_step), which it refuses
+    /// otherwise: for studies of what happens there.
+    pub fn allow_any_step(&mut self) {
+        self.any_step = true;
+    }
+
+    /// Refuses a step at which a contact gains energy. The limit is looked for when a step becomes longer, and after changes.
+    fn check_stability(&mut self, dt: f64) -> Result<(), StepError> {
+        if self.any_step || (dt <= self.last_dt && !self.unchecked) {
+            return Ok(());
+        }
+        let (limit, names) = self.limit_of_a_contact();
+        if dt > limit * (1.0 + 1e-9) {
+            let why = format!("it must be at most {limit:.4e} s for the stability of a contact ({names})");
+            return Err(StepError::Step { dt, why });
+        }
+        self.unchecked = false;
+        Ok(())
     }
 
     /// Makes room for spins, if there is none.
@@ -242,7 +272,13 @@ impl<D: Dim> Dem<D> {
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
         let cell = self.cell.as_deref();
-        View { cell, ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt) }
+        let law_reach = self.pairs.reach();
+        View {
+            cell,
+            law_reach,
+            margin: law_reach,
+            ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt)
+        }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step, zero when that is not known.
@@ -252,8 +288,9 @@ impl<D: Dim> Dem<D> {
         self.largest = self.grains.radius_range().1;
         let largest = self.largest;
         self.moving_walls.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let law_reach = self.pairs.reach();
         let view = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
-        self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
+        self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach + law_reach, order);
     }
 
     /// How far lists reach beyond contact \[m\] for grains that move at most `stride` \[m\] in a step.
@@ -314,7 +351,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         start_velocity: &grains.velocity,
         start_spin: &grains.spin,
         radius: &grains.radius,
-        mass: &grains.mass,
+        mass: grains.contact_mass(),
         material: &grains.material,
         first_material: grains.first_material,
         walls,
@@ -324,6 +361,8 @@ pub(crate) fn view_of<'a, D: Dim>(
         last_dt,
         predicts: true,
         margin: 0.0,
+        law_reach: 0.0,
+        twist_share: if options.spring_turning == SpringTurning::MeanSpin { 0.5 } else { 0.0 },
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
     }
 }
@@ -359,6 +398,7 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.check_stability(dt)?;
         self.clock.run_at(dt);
         self.blocks.inside_pool(|| self.take_steps(dt, steps))
     }
@@ -391,3 +431,6 @@ impl<D: Dim> Solver for Dem<D> {
         self.report_memory()
     }
 }
+
+#[cfg(test)]
+mod tests;

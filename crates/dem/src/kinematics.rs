@@ -1,6 +1,6 @@
 //! How two bodies move at their contact, from how they move as a whole.
 
-use crate::law::{ContactLaw, Kinematics, Load};
+use crate::law::{ContactLaw, ContactLoad, Kinematics};
 use crate::view::{Body, View};
 use granular_core::{Dim, Linear};
 
@@ -23,7 +23,7 @@ pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> (f64, f64) 
 
 /// Force vector of a load.
 #[inline(always)]
-pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) -> D::Vec {
+pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &ContactLoad<D>, normal: D::Vec) -> D::Vec {
     let along = normal * load.normal;
     if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
 }
@@ -42,9 +42,11 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
     let start_relative = own.start_velocity - other.start_velocity;
+    let gap = -overlap;
     let (presence, overlap) = share_of_step(overlap, approach, view.dt);
     let mut kinematics = Kinematics {
         normal,
+        gap,
         overlap,
         presence,
         approach,
@@ -74,7 +76,7 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
         // Within the tangent plane of now, or the moments on the two bodies would not balance.
         kinematics.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
         kinematics.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
-        kinematics.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
+        kinematics.twist = view.twist_share * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {
             kinematics.twisting = D::twist(own.spin - other.spin, normal);
             kinematics.start_twisting = D::twist(own.start_spin - other.start_spin, normal);
@@ -116,7 +118,7 @@ impl<D: Dim> Pair<D> {
     }
 }
 
-/// The kinematics of two grains that overlap now.
+/// The kinematics of two grains that overlap now, or are within the reach of a law.
 pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     first: usize,
@@ -125,5 +127,6 @@ pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     let arm = view.position[first] - view.position[second];
     let (own, other) = (view.body::<L>(first), view.body::<L>(second));
     let pair = Pair { own, other, arm, distance_squared: arm.length_squared() };
-    (pair.overlap() > 0.0 && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
+    let least = if L::REACHES { -view.law_reach } else { 0.0 };
+    (pair.overlap() > least && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
 }

@@ -3,6 +3,11 @@
 //! Symbols of this module: `k` stiffness, `c` damping, `n` the unit normal from the second to
 //! the first body, `xi` tangential displacement. Tangential quantities are kept as `n x ...`
 //! (see [`granular_core::dim`]), so one source serves disks and spheres.
+//!
+//! The spring of a contact is laid into the tangent plane as the normal turns, its length kept. What turns about the
+//! normal is a convention: here the spring of two spheres turns about it with the mean of both spins, so that the force
+//! in a pair that turns as one stays what it is in the frame of the pair. Other codes leave this turn out; results differ
+//! where spheres that stick spin about their normal, and [`SpringTurning`](crate::SpringTurning) offers both.
 
 mod hertz;
 mod linear;
@@ -24,6 +29,8 @@ use std::fmt::Debug;
 pub struct Kinematics<D: Dim> {
     /// Unit vector from the second to the first body.
     pub normal: D::Vec,
+    /// Distance of the surfaces in the middle of the step \[m\]; negative where they overlap.
+    pub gap: f64,
     /// Overlap \[m\], averaged over the part of the step before and after the surfaces meet.
     pub overlap: f64,
     /// Share of the step during which the surfaces overlap, 0 to 1.
@@ -41,7 +48,8 @@ pub struct Kinematics<D: Dim> {
     pub start_slip: D::Spin,
     /// The roll at the start of the step \[rad/s\].
     pub start_roll: D::Spin,
-    /// Mean spin about the normal at the start of the step \[rad/s\].
+    /// Spin about the normal with which tangential springs turn \[rad/s\]: the mean of both at the start of the step, or
+    /// nothing, see [`SpringTurning`](crate::SpringTurning).
     pub twist: f64,
     /// Difference of the spins about the normal \[rad/s\]; only for laws that resist twisting.
     pub twisting: f64,
@@ -102,7 +110,7 @@ impl<D: Dim> Kinematics<D> {
 
 /// What a contact does to the first body; the second gets the opposite.
 #[derive(Clone, Copy, Debug)]
-pub struct Load<D: Dim> {
+pub struct ContactLoad<D: Dim> {
     /// Force along the normal \[N\], positive when it repels.
     pub normal: f64,
     /// `n x` tangential force \[N\].
@@ -111,7 +119,7 @@ pub struct Load<D: Dim> {
     pub rolling: D::Spin,
 }
 
-impl<D: Dim> Load<D> {
+impl<D: Dim> ContactLoad<D> {
     /// A load along the normal.
     #[inline(always)]
     pub fn along_normal(force: f64) -> Self {
@@ -119,8 +127,25 @@ impl<D: Dim> Load<D> {
     }
 }
 
-/// A contact law. Statically typed in the kernels: pass any implementation to
+/// What bounds the step of a contact: its stiffest state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LawLimits {
+    /// Normal stiffness \[N/m\].
+    pub normal_stiffness: f64,
+    /// Normal damping \[N s/m\].
+    pub normal_damping: f64,
+    /// Tangential stiffness \[N/m\]; zero without a tangential spring.
+    pub tangential_stiffness: f64,
+    /// Tangential damping \[N s/m\].
+    pub tangential_damping: f64,
+}
+
+/// A contact law, a value with its own parameters. Statically typed in the kernels: pass any implementation to
 /// [`Dem::with_law`](crate::Dem::with_law).
+///
+/// A law that acts before surfaces overlap (cohesion, capillary bridges) says so by [`REACHES`](Self::REACHES) and
+/// [`reach`](Self::reach); then `load` is also called for surfaces that are apart by less, with their distance as
+/// [`Kinematics::gap`], and a contact lasts as long as the law [`acts`](Self::acts).
 pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// What one contact remembers between steps; `()` when nothing. The default is a fresh contact.
     type Memory: Copy + Default + PartialEq + Stored + Debug + Send + Sync + 'static;
@@ -131,8 +156,31 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// Name, for reports.
     const NAME: &'static str;
 
-    /// The law between two materials.
-    fn between(properties: &PairProperties, tension: Tension) -> Self;
+    /// Whether the law may act on surfaces that do not overlap. What serves such laws is not in the kernels of others.
+    const REACHES: bool = false;
+
+    /// The law as it is between two materials; the same for all unless it takes something from them.
+    fn for_pair(&self, properties: &PairProperties, tension: Tension) -> Self {
+        let _ = (properties, tension);
+        *self
+    }
+    /// Distance of surfaces \[m\] up to which the law may act.
+    fn reach(&self) -> f64 {
+        0.0
+    }
+    /// Whether the law acts on surfaces at this distance \[m\], negative where they overlap, with what the contact
+    /// remembers; only asked of laws with a reach. What it answers for overlapping surfaces does not matter.
+    #[inline(always)]
+    fn acts(&self, gap: f64, memory: &Self::Memory) -> bool {
+        let _ = memory;
+        gap < self.reach()
+    }
+    /// The stiffest state of a contact of this effective mass \[kg\], from which the limits on the step follow; none where
+    /// those of the materials hold.
+    fn limits(&self, effective_mass: f64) -> Option<LawLimits> {
+        let _ = effective_mass;
+        None
+    }
     /// Whether the law reads `slip` and `roll` of a [`Kinematics`], the motion across the contact in the
     /// middle of the step as predicted. They are zero, and cost nothing, when no law of a
     /// simulation does.
@@ -145,7 +193,7 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
         kinematics: &Kinematics<D>,
         memory: &mut Self::Memory,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D>;
+    ) -> ContactLoad<D>;
     /// Tells the tally of energy that was still stored when a contact ended.
     #[inline(always)]
     fn release<const LEDGER: bool>(&self, memory: &Self::Memory, tally: &mut Tally<LEDGER>) {
@@ -153,14 +201,36 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     }
     /// The same contact seen from the second body.
     fn reversed(memory: Self::Memory) -> Self::Memory;
+    /// The tangential spring \[m\] that a contact remembers, as `n x` the displacement of the first body, at the time between
+    /// steps; zero for laws without one.
+    fn spring(&self, kinematics: &Kinematics<D>, memory: &Self::Memory) -> D::Spin {
+        let _ = (kinematics, memory);
+        D::Spin::ZERO
+    }
+    /// The memory with such a spring in place of its own; none for laws that remember none.
+    fn with_spring(
+        &self,
+        kinematics: &Kinematics<D>,
+        memory: Self::Memory,
+        spring: D::Spin,
+    ) -> Option<Self::Memory> {
+        let _ = (kinematics, memory, spring);
+        None
+    }
     /// The load between steps and the energy stored in springs \[J\], for output. The step of the
     /// kinematics is the last one taken.
-    fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (Load<D>, f64);
+    fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (ContactLoad<D>, f64);
+}
+
+/// A law that follows from the properties of materials.
+pub trait MaterialLaw<D: Dim>: ContactLaw<D> {
+    /// The law between two materials.
+    fn between(properties: &PairProperties, tension: Tension) -> Self;
 }
 
 /// A law with a tangential spring, whose stiffness and damping may also resist rolling and
 /// twisting ([`Rolling`], [`Twisting`]).
-pub trait Frictional<D: Dim>: ContactLaw<D> {
+pub trait Frictional<D: Dim>: MaterialLaw<D> {
     /// Names of the law with rolling resistance, and with rolling and twisting resistance.
     const RESISTING: [&'static str; 2];
     /// Stiffness and damping of the tangential spring in these kinematics.

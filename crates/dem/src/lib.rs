@@ -65,14 +65,15 @@ mod view;
 pub mod walls;
 
 pub use contact::{Contact, Partner};
-pub use dem::Dem;
+pub use dem::{Dem, OtherBody};
 pub use grains::Grain;
 pub use granular_core::coarse::{CoarseFields, CoarseGrid};
 pub use granular_core::shape::{Facets, Shape};
 pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
 pub use inlets::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
 pub use law::{
-    ContactLaw, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, LinearRolling, Rolling, Twisting,
+    ContactLaw, ContactLoad, HertzMindlin, HertzNormal, Kinematics, LawLimits, LinearFrictional,
+    LinearNormal, LinearRolling, MaterialLaw, Rolling, Twisting,
 };
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;
@@ -82,7 +83,7 @@ pub use material::{
 };
 pub use periodic::{CellControl, Control, Matrix, PeriodicCell};
 pub use push::{Push, PushProfile, Pushed, Strength};
-pub use setup::{ContactModel, LeverArm, Options, Setup};
+pub use setup::{ContactModel, LeverArm, Options, Setup, SpringTurning};
 pub use shaking::Shaking;
 pub use show::Energies;
 pub use walls::{Falling, Gates, Wall};

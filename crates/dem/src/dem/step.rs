@@ -119,7 +119,7 @@ impl<D: Dim> Dem<D> {
             self.close_in_cell(dt, field);
         } else {
             let pairs = self.pairs.as_ref();
-            motion::close_step(&mut self.grains, pairs, self.blocks, field, dt, go_on, &mut self.speeds);
+            motion::close_step(&mut self.grains, pairs, self.blocks, field, (dt, go_on), &mut self.speeds);
         }
         if let (Some(shaking), Some(before)) = (shaking, before) {
             self.injected += 0.5 * dt * shaking.dot(before + self.momentum());
@@ -141,7 +141,7 @@ impl<D: Dim> Dem<D> {
         let mut force = std::mem::take(&mut self.grains.acceleration);
         let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
         let seen = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
-        let cell = self.cell.as_deref();
+        let (cell, law_reach) = (self.cell.as_deref(), self.pairs.reach());
         // In a cell that deforms, velocities are told in the laboratory.
         let started = cell.map(|cell| cell.start_velocity.as_slice()).filter(|list| !list.is_empty());
         let view = View {
@@ -150,7 +150,8 @@ impl<D: Dim> Dem<D> {
             start_velocity: started.unwrap_or(seen.start_velocity),
             dt,
             predicts: self.pairs.predicts(),
-            margin,
+            margin: margin + law_reach,
+            law_reach,
             cell,
             ..seen
         };

@@ -4,7 +4,7 @@
 //! effective mass, `delta` overlap, `a = sqrt(R delta)` radius of the contact area.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Kinematics, Load};
+use super::{ContactLaw, ContactLoad, Frictional, Kinematics, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -81,17 +81,17 @@ impl HertzNormal {
         m: &Kinematics<D>,
         area: &Area,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let force = self.force(area, m.presence, m.approach);
         // Of what the prediction adds, the spring keeps half (see `Kinematics::kept`) in a linear contact, and nearly so in an
         // impact of this one: the balance is better by 4 to 40 times.
         tally.normal_damping(|| m.damped(force, area.force, 0.5 * area.damping));
-        Load::along_normal(force)
+        ContactLoad::along_normal(force)
     }
 
-    fn rest<D: Dim>(&self, m: &Kinematics<D>) -> (Load<D>, f64) {
+    fn rest<D: Dim>(&self, m: &Kinematics<D>) -> (ContactLoad<D>, f64) {
         let area = self.area(m);
-        (Load::along_normal(self.force(&area, 1.0, m.approach)), 0.4 * area.force * m.overlap)
+        (ContactLoad::along_normal(self.force(&area, 1.0, m.approach)), 0.4 * area.force * m.overlap)
     }
 }
 
@@ -108,25 +108,32 @@ fn mean_fourth_root(s: f64) -> f64 {
     (power(1.0 + s) - power(1.0 - s)) * 0.4 / s
 }
 
-impl<D: Dim> ContactLaw<D> for HertzNormal {
-    type Memory = ();
-    const TANGENTIAL: bool = false;
-    const NAME: &'static str = "Hertz without friction";
-
+impl<D: Dim> MaterialLaw<D> for HertzNormal {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         let modulus = properties.effective_modulus;
         let damping_factor = (20.0 / 3.0 * modulus).sqrt() * properties.zeta(tension);
         Self { modulus, damping_factor, tension }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for HertzNormal {
+    type Memory = ();
+    const TANGENTIAL: bool = false;
+    const NAME: &'static str = "Hertz without friction";
 
     #[inline(always)]
-    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Kinematics<D>,
+        (): &mut (),
+        tally: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
         self.load_on(m, &self.area(m), tally)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
         self.rest(m)
     }
 }
@@ -183,20 +190,22 @@ impl<D: Dim> Frictional<D> for HertzMindlin {
     }
 }
 
-impl<D: Dim> ContactLaw<D> for HertzMindlin {
-    /// The spring \[m\] and its stiffness at the last step \[N/m\].
-    type Memory = (D::Spin, f64);
-    const TANGENTIAL: bool = true;
-    const NAME: &'static str = "Hertz-Mindlin";
-
+impl<D: Dim> MaterialLaw<D> for HertzMindlin {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         Self {
-            normal: <HertzNormal as ContactLaw<D>>::between(properties, tension),
+            normal: <HertzNormal as MaterialLaw<D>>::between(properties, tension),
             shear_modulus: properties.effective_shear_modulus,
             damping_ratio: properties.damping_ratio,
             friction: properties.friction,
         }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for HertzMindlin {
+    /// The spring \[m\] and its stiffness at the last step \[N/m\].
+    type Memory = (D::Spin, f64);
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "Hertz-Mindlin";
 
     fn predicts(&self) -> bool {
         self.damping_ratio > 0.0
@@ -208,9 +217,9 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         m: &Kinematics<D>,
         (spring, stiffness): &mut (D::Spin, f64),
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let area = self.normal.area(m);
-        let mut load: Load<D> = self.normal.load_on(m, &area, tally);
+        let mut load: ContactLoad<D> = self.normal.load_on(m, &area, tally);
         let cap = self.friction * load.normal.max(0.0);
         *spring = D::follow(*spring, m.normal, m.twist * m.dt);
         let (motion, slider) = (Motion::of(m, m.slip, m.start_slip), self.slider_on(&area));
@@ -232,8 +241,18 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         memory
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (Load<D>, f64) {
-        let (mut load, energy): (Load<D>, f64) = self.normal.rest(m);
+    fn spring(&self, m: &Kinematics<D>, memory: &(D::Spin, f64)) -> D::Spin {
+        Slider::now(memory.0, m)
+    }
+
+    /// The stiffness is that of the present overlap.
+    fn with_spring(&self, m: &Kinematics<D>, _: (D::Spin, f64), spring: D::Spin) -> Option<(D::Spin, f64)> {
+        let stiffness = self.slider_on(&self.normal.area(m)).stiffness;
+        Some((Slider::half_a_step_ago(spring, m), stiffness))
+    }
+
+    fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (ContactLoad<D>, f64) {
+        let (mut load, energy): (ContactLoad<D>, f64) = self.normal.rest(m);
         let cap = self.friction * load.normal.max(0.0);
         let slider = self.slider_on(&self.normal.area(m));
         let (force, stored) = slider.at_rest(spring, m.slip, (m.last_dt, stiffness), cap);

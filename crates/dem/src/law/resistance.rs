@@ -2,7 +2,7 @@
 
 use super::linear::LinearFrictional;
 use super::slider::Motion;
-use super::{ContactLaw, Frictional, Kinematics, Load};
+use super::{ContactLaw, ContactLoad, Frictional, Kinematics, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::Dim;
@@ -17,14 +17,16 @@ pub struct Rolling<F> {
     pub rolling_friction: f64,
 }
 
+impl<D: Dim, F: Frictional<D>> MaterialLaw<D> for Rolling<F> {
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self { frictional: F::between(properties, tension), rolling_friction: properties.rolling_friction }
+    }
+}
+
 impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
     type Memory = (F::Memory, D::Spin);
     const TANGENTIAL: bool = true;
     const NAME: &'static str = F::RESISTING[0];
-
-    fn between(properties: &PairProperties, tension: Tension) -> Self {
-        Self { frictional: F::between(properties, tension), rolling_friction: properties.rolling_friction }
-    }
 
     fn predicts(&self) -> bool {
         ContactLaw::<D>::predicts(&self.frictional)
@@ -36,9 +38,9 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         m: &Kinematics<D>,
         (grip, rolling): &mut (F::Memory, D::Spin),
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let last = *grip;
-        let mut load: Load<D> = self.frictional.load(m, grip, tally);
+        let mut load: ContactLoad<D> = self.frictional.load(m, grip, tally);
         let cap = self.rolling_friction * load.normal.max(0.0);
         *rolling = D::follow(*rolling, m.normal, m.twist * m.dt);
         let motion = Motion::of(m, m.roll * m.effective_radius, m.start_roll * m.effective_radius);
@@ -61,7 +63,20 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         (F::reversed(grip), -rolling)
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (Load<D>, f64) {
+    fn spring(&self, m: &Kinematics<D>, memory: &(F::Memory, D::Spin)) -> D::Spin {
+        self.frictional.spring(m, &memory.0)
+    }
+
+    fn with_spring(
+        &self,
+        m: &Kinematics<D>,
+        (grip, rolling): (F::Memory, D::Spin),
+        spring: D::Spin,
+    ) -> Option<(F::Memory, D::Spin)> {
+        Some((self.frictional.with_spring(m, grip, spring)?, rolling))
+    }
+
+    fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (ContactLoad<D>, f64) {
         let (mut load, energy) = self.frictional.at_rest(m, grip);
         let cap = self.rolling_friction * load.normal.max(0.0);
         let (rate, last) = (m.roll * m.effective_radius, self.frictional.last_stiffness(&grip));
@@ -88,18 +103,20 @@ pub struct Twisting<F> {
 /// Memory of [`Rolling`], and the twisting spring \[m\].
 type Twisted<D, F> = (<Rolling<F> as ContactLaw<D>>::Memory, f64);
 
+impl<D: Dim, F: Frictional<D>> MaterialLaw<D> for Twisting<F> {
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self {
+            rolling: <Rolling<F> as MaterialLaw<D>>::between(properties, tension),
+            twisting_friction: properties.twisting_friction,
+        }
+    }
+}
+
 impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
     type Memory = Twisted<D, F>;
     const TANGENTIAL: bool = true;
     const TWISTING: bool = true;
     const NAME: &'static str = F::RESISTING[1];
-
-    fn between(properties: &PairProperties, tension: Tension) -> Self {
-        Self {
-            rolling: <Rolling<F> as ContactLaw<D>>::between(properties, tension),
-            twisting_friction: properties.twisting_friction,
-        }
-    }
 
     fn predicts(&self) -> bool {
         ContactLaw::<D>::predicts(&self.rolling)
@@ -111,9 +128,9 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         m: &Kinematics<D>,
         (rolling, twisting): &mut Twisted<D, F>,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let last = rolling.0;
-        let mut load: Load<D> = self.rolling.load(m, rolling, tally);
+        let mut load: ContactLoad<D> = self.rolling.load(m, rolling, tally);
         let cap = self.twisting_friction * load.normal.max(0.0);
         let radius = m.effective_radius;
         let motion = Motion::of(m, m.twisting * radius, m.start_twisting * radius);
@@ -138,7 +155,20 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         (<Rolling<F> as ContactLaw<D>>::reversed(rolling), twisting)
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (Load<D>, f64) {
+    fn spring(&self, m: &Kinematics<D>, memory: &Twisted<D, F>) -> D::Spin {
+        ContactLaw::<D>::spring(&self.rolling, m, &memory.0)
+    }
+
+    fn with_spring(
+        &self,
+        m: &Kinematics<D>,
+        (rolling, twisting): Twisted<D, F>,
+        spring: D::Spin,
+    ) -> Option<Twisted<D, F>> {
+        Some((self.rolling.with_spring(m, rolling, spring)?, twisting))
+    }
+
+    fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (ContactLoad<D>, f64) {
         let (mut load, energy) = self.rolling.at_rest(m, rolling);
         let cap = self.twisting_friction * load.normal.max(0.0);
         let frictional = &self.rolling.frictional;

@@ -1,6 +1,7 @@
 //! The stiffest contact of two materials, and the step that it bears.
 
 use crate::dem::Dem;
+use crate::law::LawLimits;
 use crate::material::PairProperties;
 use crate::setup::ContactModel;
 use granular_core::{Dim, Linear};
@@ -22,6 +23,8 @@ pub(super) struct Stiffest {
     /// Speed of the hardest impact \[m/s\], and its overlap \[m\].
     pub(super) speed: f64,
     pub(super) deepest: f64,
+    /// Whether it is one with a wall.
+    pub(super) on_wall: bool,
     pub(super) names: String,
     /// What was assumed.
     pub(super) assumed: String,
@@ -54,12 +57,15 @@ struct Couple {
 impl Oscillator {
     pub(super) fn linear(pair: &PairProperties, effective_mass: f64, zeta: f64) -> Self {
         let normal = pair.normal_stiffness / effective_mass;
-        let normal_damping = 2.0 * zeta * normal.sqrt();
+        let of_restitution = || 2.0 * zeta * normal.sqrt();
+        let normal_damping = pair.normal_damping.map_or_else(of_restitution, |given| given / effective_mass);
         Self {
             normal,
             tangential: pair.tangential_stiffness / effective_mass,
             normal_damping,
-            tangential_damping: pair.damping_ratio * normal_damping,
+            tangential_damping: pair
+                .tangential_damping
+                .map_or(pair.damping_ratio * normal_damping, |given| given / effective_mass),
         }
     }
 
@@ -78,8 +84,9 @@ impl Oscillator {
     }
 
     /// Largest stable step \[s\]: see [`stability_step`](crate::stability_step).
-    pub(super) fn largest_step<D: Dim>(&self, neighbours: usize, turns: bool) -> f64 {
-        let gain = 1.0 + 1.0 / D::BALL_INERTIA;
+    /// `turns` holds the largest ratio of `mass radius^2` to the moment of inertia, if grains turn.
+    pub(super) fn largest_step(&self, neighbours: usize, turns: Option<f64>) -> f64 {
+        let gain = 1.0 + turns.unwrap_or(0.0);
         let share = neighbours as f64;
         let limit = |stiffness: f64, damping: f64| {
             let (w2, c) = (stiffness * share, damping * share);
@@ -87,7 +94,7 @@ impl Oscillator {
             2.0 * ((c * c + w2).sqrt() - c) / w2
         };
         let along = limit(self.normal, self.normal_damping);
-        if !turns || self.tangential <= 0.0 {
+        if turns.is_none() || self.tangential <= 0.0 {
             return along;
         }
         along.min(limit(gain * self.tangential, gain * self.tangential_damping))
@@ -122,14 +129,18 @@ impl<D: Dim> Dem<D> {
         let is_hertz = self.options.contact == ContactModel::Hertz;
         let present = if is_hertz { self.deepest_overlap() } else { 0.0 };
         let mut pairs = Vec::new();
-        let mut add = |couple: Couple, names: &str, smaller: f64| {
-            pairs.push(match self.options.contact {
+        let mut add = |couple: Couple, (a, b): (usize, usize), names: &str, smaller: f64| {
+            let of_materials = match self.options.contact {
                 ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names, with_times),
                 ContactModel::Hertz => {
                     // Two grains may meet head-on.
                     let closing = if couple.on_wall { present_speed } else { 2.0 * present_speed };
                     self.hertz(&couple, closing.max(fall), (stack, present * smaller), names, with_times)
                 }
+            };
+            pairs.push(match self.pairs.limits(a, b, couple.effective_mass) {
+                Some(limits) => of_materials.of_law(&limits, couple.effective_mass),
+                None => of_materials,
             });
         };
         for (a, b, properties) in self.materials.pairs() {
@@ -144,7 +155,7 @@ impl<D: Dim> Dem<D> {
                     mass: m.min(n),
                     on_wall: false,
                 };
-                add(couple, "grain on grain", r.min(s));
+                add(couple, (a, b), "grain on grain", r.min(s));
             }
             let at_wall = |wall: usize, grain: (f64, f64)| {
                 if walls.contains(&wall) { grain } else { lightest_of_none() }
@@ -160,7 +171,7 @@ impl<D: Dim> Dem<D> {
                     mass,
                     on_wall: true,
                 };
-                add(couple, "grain on wall", radius);
+                add(couple, (a, b), "grain on wall", radius);
             }
         }
         pairs
@@ -176,6 +187,7 @@ impl<D: Dim> Dem<D> {
             rayleigh_time: f64::INFINITY,
             speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
+            on_wall: couple.on_wall,
             names: names.to_owned(),
             assumed: "lightest grains".to_owned(),
         }
@@ -210,6 +222,7 @@ impl<D: Dim> Dem<D> {
             rayleigh_time: if D::TWISTS && with_times { self.rayleigh_time() } else { f64::INFINITY },
             speed,
             deepest,
+            on_wall: couple.on_wall,
             names: names.to_owned(),
             assumed: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
         }
@@ -229,6 +242,27 @@ impl<D: Dim> Dem<D> {
             inlet.radii.iter().filter_map(times)
         });
         (0..self.len()).filter_map(time).chain(of_inlets).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Stiffest {
+    /// The same with what a law of the caller's own says of itself.
+    fn of_law(self, limits: &LawLimits, effective_mass: f64) -> Self {
+        let per_mass = |value: f64| value / effective_mass;
+        let normal = per_mass(limits.normal_stiffness);
+        Self {
+            oscillator: Oscillator {
+                normal,
+                tangential: per_mass(limits.tangential_stiffness),
+                normal_damping: per_mass(limits.normal_damping),
+                tangential_damping: per_mass(limits.tangential_damping),
+            },
+            stiffness: limits.normal_stiffness,
+            contact_time: PI / normal.sqrt(),
+            rayleigh_time: f64::INFINITY,
+            deepest: self.speed / normal.sqrt(),
+            ..self
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod coarse;
 mod coarse_cell;
+mod cohesion;
 mod conservation;
 mod contract;
 mod energy;
@@ -25,6 +26,7 @@ mod push;
 mod restart;
 mod sample;
 mod shaking;
+mod single;
 mod stability;
 mod surfaces;
 
