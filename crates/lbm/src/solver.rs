@@ -173,7 +173,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let velocities: Vec<<L::Dim as Dim>::Vec> = from.array_of("velocities of obstacles", count)?;
         let spins: Vec<<L::Dim as Dim>::Spin> = from.array_of("spins of obstacles", count)?;
         let motions = positions.into_iter().zip(velocities).zip(spins);
-        let motions = motions.map(|((position, velocity), spin)| Motion { position, velocity, spin });
+        let motions = motions.map(|((position, velocity), spin)| Motion::new(position, velocity, spin));
         let motions: Vec<_> = motions.collect();
         if motions.iter().all(Motion::is_finite) {
             return Ok(motions);

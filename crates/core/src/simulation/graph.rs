@@ -1,5 +1,6 @@
 //! The solvers of a simulation and the couplings between them.
 
+use super::VisitSection;
 use super::edge::{Edge, Typed};
 use super::node::{Node, NodeKey};
 use super::order::Group;
@@ -102,7 +103,7 @@ impl Graph {
     }
 
     /// Calls `visit` with the name of each section and what puts its entries.
-    pub(super) fn each_section(&self, visit: &mut dyn FnMut(&str, &dyn Fn(&mut Section))) {
+    pub(super) fn each_section(&self, visit: &mut VisitSection<'_>) {
         for node in &self.nodes {
             visit(&self.section_of(node), &|section| node.solver.save(section));
         }
