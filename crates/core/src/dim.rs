@@ -9,7 +9,7 @@
 //! [`Dim::turn`]. One source then serves both dimensions.
 
 use crate::field::FieldRef;
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -113,6 +113,21 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
     fn cross(a: Self::Vec, b: Self::Vec) -> Self::Spin;
     /// Cross product `spin x arm`: the velocity at `arm` of a body that turns with `spin`.
     fn turn(spin: Self::Spin, arm: Self::Vec) -> Self::Vec;
+    /// A vector turned by a rotation \[rad\]: an angle in the plane, a rotation vector in space, whose direction is the axis
+    /// and whose length is the angle. Rodrigues' formula; one less the cosine from half the angle, so that a small turn is
+    /// exact.
+    fn rotated(vector: Self::Vec, rotation: Self::Spin) -> Self::Vec {
+        let angle = rotation.length();
+        if angle == 0.0 {
+            return vector;
+        }
+        let axis = rotation * (1.0 / angle);
+        let once = Self::turn(axis, vector);
+        let half = (0.5 * angle).sin();
+        vector + once * angle.sin() + Self::turn(axis, once) * (2.0 * half * half)
+    }
+    /// The rotation \[rad\] that turns by `first` and by `then` after it. In space its angle is at most half a turn.
+    fn rotation_after(first: Self::Spin, then: Self::Spin) -> Self::Spin;
     /// The part of `spin` at right angles to the unit vector `normal`; all of it in the plane.
     fn tangential(spin: Self::Spin, normal: Self::Vec) -> Self::Spin;
     /// Carries a tangential quantity of a contact along with the contact: turned by `twist`
@@ -262,6 +277,10 @@ impl Dim for D2 {
         DVec2::new(-spin * arm.y, spin * arm.x)
     }
     #[inline(always)]
+    fn rotation_after(first: f64, then: f64) -> f64 {
+        first + then
+    }
+    #[inline(always)]
     fn tangential(spin: f64, _normal: DVec2) -> f64 {
         spin
     }
@@ -313,6 +332,13 @@ impl Dim for D3 {
     #[inline(always)]
     fn turn(spin: DVec3, arm: DVec3) -> DVec3 {
         spin.cross(arm)
+    }
+    fn rotation_after(first: DVec3, then: DVec3) -> DVec3 {
+        let product = DQuat::from_scaled_axis(then) * DQuat::from_scaled_axis(first);
+        // Of the two that turn alike, the one with the smaller angle.
+        let (axis, cosine) = (product.xyz() * product.w.signum(), product.w.abs());
+        let sine = axis.length();
+        if sine == 0.0 { DVec3::ZERO } else { axis * (2.0 * sine.atan2(cosine) / sine) }
     }
     #[inline(always)]
     fn tangential(spin: DVec3, normal: DVec3) -> DVec3 {

@@ -56,7 +56,7 @@ pub use quantity::{GrainMotion, Grains, HydroLoad, Load, LoadsMut, Motion, Obsta
 pub use setup_error::SetupError;
 pub use shape::Shape;
 pub use simulation::{Clock, CouplingView, Ending, NodeKey, RunError, Simulation};
-pub use snapshot::{Section, SnapshotError, Stored};
+pub use snapshot::{EntrySink, Section, SnapshotError, Stored};
 pub use solver::{Bound, Limits, Memory, Solver, StepError, StepLimit, StepRule};
 pub use tensor::SymmetricTensor;
 pub use walls::WallMotion;

@@ -17,46 +17,61 @@ pub struct Motion<D: Dim> {
     pub velocity: D::Vec,
     /// Angular velocity \[rad/s\].
     pub spin: D::Spin,
+    /// How the body is turned \[rad\] against the frame of the scene, about its centre: an angle in the plane, a rotation
+    /// vector in space ([`Dim::rotated`]). Zero, also for bodies that nobody can see turn, such as balls.
+    pub orientation: D::Spin,
 }
 
 impl<D: Dim> PartialEq for Motion<D> {
     fn eq(&self, other: &Self) -> bool {
-        self.position == other.position && self.velocity == other.velocity && self.spin == other.spin
+        self.position == other.position
+            && self.velocity == other.velocity
+            && self.spin == other.spin
+            && self.orientation == other.orientation
     }
 }
 
 impl<D: Dim> Motion<D> {
     /// A body at rest.
     pub fn at(position: D::Vec) -> Self {
-        Self { position, velocity: D::Vec::ZERO, spin: D::Spin::ZERO }
+        Self::new(position, D::Vec::ZERO, D::Spin::ZERO)
+    }
+
+    /// A body that is not turned, with its position \[m\], velocity \[m/s\] and angular velocity \[rad/s\].
+    pub fn new(position: D::Vec, velocity: D::Vec, spin: D::Spin) -> Self {
+        Self { position, velocity, spin, orientation: D::Spin::ZERO }
     }
 
     /// Whether all components are finite.
     pub fn is_finite(&self) -> bool {
-        self.position.is_finite() && self.velocity.is_finite() && self.spin.is_finite()
+        self.position.is_finite()
+            && self.velocity.is_finite()
+            && self.spin.is_finite()
+            && self.orientation.is_finite()
     }
 }
 
-/// Positions \[m\], velocities \[m/s\], angular velocities \[rad/s\] and radii \[m\] of grains, in the frame of the scene.
+/// Positions \[m\], velocities \[m/s\], angular velocities \[rad/s\], orientations \[rad\] and radii \[m\] of grains, in the frame of
+/// the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct GrainMotion<D>(PhantomData<D>);
 
 impl<D: Dim> Quantity for GrainMotion<D> {
     const NAME: &'static str = "motion of grains";
-    const UNIT: &'static str = "m, m/s, rad/s";
+    const UNIT: &'static str = "m, m/s, rad/s, rad";
     type View<'a> = Grains<'a, D>;
     type ViewMut<'a> = &'a mut [Motion<D>];
 }
 
-/// Where the bodies in a fluid are \[m\] and how they move \[m/s, rad/s\], in the order of the bodies, in the frame of the
+/// Where the bodies in a fluid are \[m\], how they are turned \[rad\] and how they move \[m/s, rad/s\], in the order of the bodies, in the frame of the
 /// scene. A fluid that takes it meets the bodies there in the whole of its next step: what is right to second order is the motion
-/// in the middle of that step.
+/// in the middle of that step. A fluid whose bodies keep their shape as they turn, or cannot be turned, ignores orientations.
 #[derive(Clone, Copy, Debug)]
 pub struct ObstacleMotion<D>(PhantomData<D>);
 
 impl<D: Dim> Quantity for ObstacleMotion<D> {
     const NAME: &'static str = "motion of obstacles";
-    const UNIT: &'static str = "m, m/s, rad/s";
+    const UNIT: &'static str = "m, m/s, rad/s, rad";
     type View<'a> = &'a [Motion<D>];
     type ViewMut<'a> = &'a mut [Motion<D>];
 }
@@ -67,6 +82,7 @@ pub struct Grains<'a, D: Dim> {
     position: &'a [D::Vec],
     velocity: &'a [D::Vec],
     spin: &'a [D::Spin],
+    orientation: &'a [D::Spin],
     radius: &'a [f64],
     id: &'a [u32],
 }
@@ -88,7 +104,16 @@ impl<'a, D: Dim> Grains<'a, D> {
         assert!(velocity.len() == count && radius.len() == count, "arrays of grains differ in length");
         assert!(spin.is_empty() || spin.len() == count, "arrays of grains differ in length");
         assert!(id.is_empty() || id.len() == count, "arrays of grains differ in length");
-        Self { position, velocity, spin, radius, id }
+        Self { position, velocity, spin, orientation: &[], radius, id }
+    }
+
+    /// With orientations \[rad\], by a solver that keeps them; without, no grain is turned.
+    ///
+    /// # Panics
+    /// When there is not one for each grain.
+    pub fn with_orientations(self, orientation: &'a [D::Spin]) -> Self {
+        assert!(orientation.len() == self.len(), "arrays of grains differ in length");
+        Self { orientation, ..self }
     }
 
     /// Number of grains.
@@ -112,6 +137,7 @@ impl<'a, D: Dim> Grains<'a, D> {
             position: self.position[index],
             velocity: self.velocity[index],
             spin: self.spin.get(index).copied().unwrap_or(D::Spin::ZERO),
+            orientation: self.orientation.get(index).copied().unwrap_or(D::Spin::ZERO),
         }
     }
 

@@ -41,6 +41,9 @@ impl fmt::Debug for Simulation {
     }
 }
 
+/// What takes the name of a section and a function that puts its entries.
+pub type VisitSection<'a> = dyn FnMut(&str, &dyn Fn(&mut Section)) + 'a;
+
 /// Steps of a segment after which limits are asked for again. By their count, so that the bits are the same however a run is
 /// cut into calls, and after a restart.
 const ASKED_EVERY: u64 = 100;
@@ -192,13 +195,27 @@ impl Simulation {
         Ok(())
     }
 
-    /// The sections of clock, solvers and couplings: all that decides how the run goes on.
+    /// The sections of clock, solvers and couplings: all that decides how the run goes on. A copy of the whole state; see
+    /// [`Simulation::each_section`] for what needs none.
     pub fn save(&self) -> Vec<Section> {
-        let mut clock = Section::new("clock");
-        clock.put("start and dt", &[self.clock.start, self.clock.dt]);
-        clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
-        self.graph.save_shares(&mut clock);
-        std::iter::once(clock).chain(self.graph.save()).collect()
+        let mut sections = Vec::new();
+        self.each_section(&mut |name, fill| {
+            let mut section = Section::new(name);
+            fill(&mut section);
+            sections.push(section);
+        });
+        sections
+    }
+
+    /// Calls `visit` with the name of each section of [`Simulation::save`], in order, and with a function that puts its
+    /// entries into a section, which may be one that [passes them on](Section::passing_on).
+    pub fn each_section(&self, visit: &mut VisitSection<'_>) {
+        visit("clock", &|clock| {
+            clock.put("start and dt", &[self.clock.start, self.clock.dt]);
+            clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
+            self.graph.save_shares(clock);
+        });
+        self.graph.each_section(visit);
     }
 
     /// Restores clock, solvers and couplings.

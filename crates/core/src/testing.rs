@@ -14,6 +14,7 @@
 //! | `steps_do_not_allocate` | none at all after a warm-up |
 //! | `limits_are_positive_finite_and_named_once` | the report can be used |
 //! | `all_that_can_be_shown_is_shown_once` | with its kind, unit and length |
+//! | `a_state_is_passed_on_without_a_copy` | to be hashed, with the bytes that are saved |
 //!
 //! A solver that takes loads on grains runs [`loads_follow_their_grains`] as well.
 
@@ -22,6 +23,7 @@ mod contract;
 mod damage;
 mod limits;
 mod loads;
+mod passing;
 #[cfg(test)]
 mod tests;
 mod watch;
@@ -99,6 +101,11 @@ macro_rules! contract_tests {
             #[test]
             fn all_that_can_be_shown_is_shown_once() -> Result<(), Breach> {
                 contract().show()
+            }
+
+            #[test]
+            fn a_state_is_passed_on_without_a_copy() -> Result<(), Breach> {
+                contract().passing_on()
             }
         }
     };

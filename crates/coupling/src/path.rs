@@ -36,7 +36,7 @@ pub struct Body<D: Dim> {
     pub radius: f64,
     /// Path of the centre.
     pub path: Path<D>,
-    /// Angular velocity about the centre \[rad/s\].
+    /// Angular velocity about the centre \[rad/s\]; the body is not turned at the start.
     pub spin: D::Spin,
 }
 
@@ -59,7 +59,7 @@ impl<D: Dim> Body<D> {
                 (arm, D::turn(rate, arm - centre))
             }
         };
-        Motion { position, velocity, spin: self.spin }
+        Motion { orientation: self.spin * time, ..Motion::new(position, velocity, self.spin) }
     }
 
     /// Fastest speed of its surface \[m/s\].

@@ -18,6 +18,7 @@ pub struct PrescribedMotion<D: Dim> {
     position: Vec<D::Vec>,
     velocity: Vec<D::Vec>,
     spin: Vec<D::Spin>,
+    orientation: Vec<D::Spin>,
     radius: Vec<f64>,
 }
 
@@ -37,6 +38,7 @@ impl<D: Dim> PrescribedMotion<D> {
             position: Vec::new(),
             velocity: Vec::new(),
             spin: Vec::new(),
+            orientation: Vec::new(),
         };
         this.follow();
         Ok(this)
@@ -58,11 +60,13 @@ impl<D: Dim> PrescribedMotion<D> {
         self.position.clear();
         self.velocity.clear();
         self.spin.clear();
+        self.orientation.clear();
         for body in &self.bodies {
             let motion = body.motion(time);
             self.position.push(motion.position);
             self.velocity.push(motion.velocity);
             self.spin.push(motion.spin);
+            self.orientation.push(motion.orientation);
         }
     }
 }
@@ -70,6 +74,7 @@ impl<D: Dim> PrescribedMotion<D> {
 impl<D: Dim> Provides<GrainMotion<D>> for PrescribedMotion<D> {
     fn view(&self) -> Grains<'_, D> {
         Grains::new(&self.position, &self.velocity, &self.spin, &self.radius, &[])
+            .with_orientations(&self.orientation)
     }
 }
 
@@ -138,7 +143,35 @@ impl<D: Dim> Solver for PrescribedMotion<D> {
     }
 
     fn memory(&self) -> Memory {
-        let per_body = size_of::<Body<D>>() + 2 * size_of::<D::Vec>() + size_of::<D::Spin>() + 8;
+        let per_body = size_of::<Body<D>>() + 2 * size_of::<D::Vec>() + 2 * size_of::<D::Spin>() + 8;
         Memory { bytes: self.bodies.len() * per_body, bytes_per_item: per_body, left_out: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Path;
+    use granular_core::glam::{DVec2, DVec3};
+    use granular_core::{D2, D3};
+
+    #[test]
+    fn bodies_are_turned_as_they_spin() {
+        let mut disk = Body::<D2>::new(DVec2::ZERO, 0.1, Path::Steady(DVec2::X));
+        disk.spin = -0.5;
+        let mut disks =
+            PrescribedMotion::new(vec![disk, Body::new(DVec2::ONE, 0.1, Path::Steady(DVec2::X))]).unwrap();
+        disks.advance(0.25, 8).unwrap();
+        let orientation = |index| disks.view().motion(index).orientation;
+        assert_eq!([0, 1].map(orientation), [-1.0, 0.0]);
+        let mut ball = Body::<D3>::new(DVec3::ZERO, 0.1, Path::Steady(DVec3::X));
+        ball.spin = DVec3::new(0.3, -0.2, 0.6);
+        let arm = DVec3::new(0.0, 0.1, 0.02);
+        // The velocity of a point of the body is the derivative of where it is.
+        let step = 1e-5;
+        let [low, high] =
+            [2.0 - step, 2.0 + step].map(|time| D3::rotated(arm, ball.motion(time).orientation));
+        let now = D3::rotated(arm, ball.motion(2.0).orientation);
+        assert!(((high - low) * (0.5 / step) - D3::turn(ball.spin, now)).length() < 1e-10);
     }
 }

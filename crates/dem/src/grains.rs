@@ -229,8 +229,9 @@ impl<D: Dim> Grains<D> {
             to.put(FIXED, &self.fixed.iter().map(|&fixed| u8::from(fixed)).collect::<Vec<_>>());
         }
         if self.takes_loads {
-            to.put(LOADS[0], &self.load.iter().map(|load| load.force).collect::<Vec<_>>());
-            to.put(LOADS[1], &self.load.iter().map(|load| load.torque).collect::<Vec<_>>());
+            let count = self.load.len();
+            to.put_each(LOADS[0], count, |put| self.load.iter().for_each(|load| put(load.force)));
+            to.put_each(LOADS[1], count, |put| self.load.iter().for_each(|load| put(load.torque)));
         }
     }
 

@@ -277,26 +277,34 @@ pub(crate) fn save<M: Copy + Default + PartialEq + Stored>(
     ids: &[u32],
     to: &mut Section,
 ) {
-    let (mut pairs, mut memories) = (Vec::new(), Vec::new());
-    let (mut walls, mut wall_memories) = (Vec::new(), Vec::new());
-    for (block, list) in lists.iter().enumerate() {
-        list.visit_pairs(blocks.range(block), |first, second, memory| {
+    let pairs = |visit: &mut dyn FnMut([u32; 2], M)| {
+        for (block, list) in lists.iter().enumerate() {
+            list.visit_pairs(blocks.range(block), |first, second, memory| {
+                if *memory != M::default() {
+                    visit([ids[first], ids[second]], *memory);
+                }
+            });
+        }
+    };
+    let walls = |visit: &mut dyn FnMut([u32; 2], M)| {
+        for (near, memory) in lists.iter().flat_map(|list| list.near_walls.iter().zip(&list.wall_memory)) {
             if *memory != M::default() {
-                pairs.push([ids[first], ids[second]]);
-                memories.push(*memory);
-            }
-        });
-        for (near, memory) in list.near_walls.iter().zip(&list.wall_memory) {
-            if *memory != M::default() {
-                walls.push([ids[near.grain as usize], near.wall]);
-                wall_memories.push(*memory);
+                visit([ids[near.grain as usize], near.wall], *memory);
             }
         }
-    }
-    to.put("contact pairs", &pairs);
-    to.put("contact memories", &memories);
-    to.put("wall contacts", &walls);
-    to.put("wall contact memories", &wall_memories);
+    };
+    put_contacts(["contact pairs", "contact memories"], &pairs, to);
+    put_contacts(["wall contacts", "wall contact memories"], &walls, to);
+}
+
+/// Calls its argument with all contacts: who meets, and what is remembered.
+type Visit<'a, M> = &'a dyn Fn(&mut dyn FnMut([u32; 2], M));
+
+fn put_contacts<M: Stored>([contacts, memories]: [&str; 2], visit: Visit<'_, M>, to: &mut Section) {
+    let mut count = 0;
+    visit(&mut |_, _| count += 1);
+    to.put_each(contacts, count, |put| visit(&mut |contact, _| put(contact)));
+    to.put_each(memories, count, |put| visit(&mut |_, memory| put(memory)));
 }
 
 /// Where the grain of each identifier is.

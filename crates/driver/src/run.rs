@@ -14,7 +14,7 @@ use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
 use granular_core::{Ending, Scheduled, Section, Simulation};
-use granular_io::{SnapshotStore, hash_hex, state_hash};
+use granular_io::{SnapshotStore, hash_hex, simulation_hash};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -502,7 +502,7 @@ impl Session<'_> {
             "wall_seconds": wall,
             "item": first.size().1,
             "rate": steps as f64 * first.size().0 as f64 / wall,
-            "state_hash": hash_hex(state_hash(&simulation.save())),
+            "state_hash": hash_hex(simulation_hash(simulation)),
             "metrics": Value::Object(values.collect()),
             "units": Value::Object(units.collect()),
             "stages": self.records,

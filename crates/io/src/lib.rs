@@ -75,7 +75,9 @@ pub use atomic::write_atomically;
 pub use error::IoError;
 pub use figure::Figure;
 pub use frame::{Field, Frame, Number, Values};
-pub use snapshot_file::{Latest, SnapshotStore, hash_hex, read_snapshot, state_hash, write_snapshot};
+pub use snapshot_file::{
+    Latest, SnapshotStore, hash_hex, read_snapshot, simulation_hash, state_hash, write_snapshot,
+};
 pub use stl::read_stl;
 pub use table::{CsvRow, Table, TableWriter, can_be_a_column, csv_row, csv_rows, read_table};
 pub use vtk::{Collection, write_fields, write_links_vtp, write_vti, write_vtp};

@@ -22,7 +22,9 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 use xxhash_rust::xxh3::Xxh3;
 
+mod hash;
 mod store;
+pub use hash::simulation_hash;
 pub use store::{Latest, SnapshotStore};
 
 const MAGIC: &[u8; 8] = b"GRANSNAP";
@@ -102,14 +104,22 @@ fn encode(sections: &[Section], mut to: &mut dyn Write) -> io::Result<()> {
 }
 
 fn encode_section(section: &Section, to: &mut impl Write) -> io::Result<()> {
-    write_text(section.name(), to)?;
-    to.write_all(&short(section.entries().count())?.to_le_bytes())?;
+    encode_head(section.name(), section.entries().count(), to)?;
     for (name, bytes) in section.entries() {
-        write_text(name, to)?;
-        to.write_all(&(bytes.len() as u64).to_le_bytes())?;
+        encode_entry_head(name, bytes.len() as u64, to)?;
         to.write_all(bytes)?;
     }
     Ok(())
+}
+
+fn encode_head(name: &str, entries: usize, to: &mut impl Write) -> io::Result<()> {
+    write_text(name, to)?;
+    to.write_all(&short(entries)?.to_le_bytes())
+}
+
+fn encode_entry_head(name: &str, bytes: u64, to: &mut impl Write) -> io::Result<()> {
+    write_text(name, to)?;
+    to.write_all(&bytes.to_le_bytes())
 }
 
 fn section_bytes(section: &Section) -> u64 {

@@ -75,7 +75,7 @@ impl<D: Dim> Obstacle<D> {
     /// Where it is and how it moves.
     pub fn motion(&self) -> Motion<D> {
         let position = self.shape.centre() + self.displacement;
-        Motion { position, velocity: self.velocity, spin: self.spin }
+        Motion::new(position, self.velocity, self.spin)
     }
 
     /// Takes a motion, whose place may lie periods away.

@@ -173,7 +173,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let velocities: Vec<<L::Dim as Dim>::Vec> = from.array_of("velocities of obstacles", count)?;
         let spins: Vec<<L::Dim as Dim>::Spin> = from.array_of("spins of obstacles", count)?;
         let motions = positions.into_iter().zip(velocities).zip(spins);
-        let motions = motions.map(|((position, velocity), spin)| Motion { position, velocity, spin });
+        let motions = motions.map(|((position, velocity), spin)| Motion::new(position, velocity, spin));
         let motions: Vec<_> = motions.collect();
         if motions.iter().all(Motion::is_finite) {
             return Ok(motions);
@@ -227,9 +227,11 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         to.put_one("steps", self.steps);
         to.put_one("acceleration", self.setup.acceleration);
         // What enters each cell, whatever the layout: the same bytes at odd and even steps.
-        let entering: Vec<T> =
-            self.fluid().flat_map(|(_, place)| self.populations.entering::<L, Q>(place)).collect();
-        to.put("populations", &entering);
+        to.put_each("populations", self.fluid_cells * Q, |put| {
+            for (_, place) in self.fluid() {
+                self.populations.entering::<L, Q>(place).into_iter().for_each(&mut *put);
+            }
+        });
         let loads: Vec<[f64; 6]> = self
             .beyond
             .obstacles

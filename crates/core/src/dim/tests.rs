@@ -15,6 +15,22 @@ proptest! {
     }
 
     #[test]
+    fn rotations_are_those_of_quaternions_and_of_the_plane(
+        v in [-1.0..1.0, -1.0..1.0, -1.0..1.0f64],
+        a in [-4.0..4.0, -4.0..4.0, -4.0..4.0f64],
+        b in [-4.0..4.0, -4.0..4.0, -4.0..4.0f64],
+    ) {
+        let [v, a, b] = [v, a, b].map(DVec3::from);
+        prop_assert!(close(D3::rotated(v, a), DQuat::from_scaled_axis(a) * v));
+        let both = D3::rotation_after(a, b);
+        prop_assert!(both.length() < 3.142);
+        prop_assert!((D3::rotated(v, both) - D3::rotated(D3::rotated(v, a), b)).length() < 1e-13);
+        let flat = D2::rotated(v.truncate(), a.z);
+        prop_assert!(close(flat.extend(0.0), D3::rotated(DVec3::new(v.x, v.y, 0.0), DVec3::new(0.0, 0.0, a.z))));
+        prop_assert!(close(flat.extend(0.0), (glam::DVec2::from_angle(a.z).rotate(v.truncate())).extend(0.0)));
+    }
+
+    #[test]
     fn a_tangential_vector_survives_its_dual(v in [-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n in [0.1..1.0, -1.0..1.0, -1.0..1.0f64]) {
         let normal = DVec3::from(n).normalize();
         let vector = DVec3::from(v);
@@ -28,6 +44,20 @@ proptest! {
         prop_assert!((followed.length() - DVec3::from(s).length()).abs() < 1e-14);
         prop_assert!(followed.z.abs() < 1e-15);
     }
+}
+
+#[test]
+fn small_rotations_are_kept() {
+    let (first, then) = (DVec3::new(3e-12, 0.0, 0.0), DVec3::new(0.0, 2e-11, 0.0));
+    assert!((D3::rotation_after(first, then) - (first + then)).length() < 1e-20);
+    assert_eq!(D3::rotation_after(DVec3::ZERO, DVec3::ZERO), DVec3::ZERO);
+    assert!(
+        (D3::rotated(DVec3::X, DVec3::new(0.0, 0.0, 1e-9)) - DVec3::new(1.0, 1e-9, 0.0)).length() < 1e-17
+    );
+    // A quarter about z and then one about x takes x to y to z.
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let both = D3::rotation_after(DVec3::Z * quarter, DVec3::X * quarter);
+    assert!((D3::rotated(DVec3::X, both) - DVec3::Z).length() < 1e-15);
 }
 
 #[test]

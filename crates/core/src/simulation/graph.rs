@@ -1,5 +1,6 @@
 //! The solvers of a simulation and the couplings between them.
 
+use super::VisitSection;
 use super::edge::{Edge, Typed};
 use super::node::{Node, NodeKey};
 use super::order::Group;
@@ -101,18 +102,14 @@ impl Graph {
         within.try_for_each(|edge| edge.during(step, count, nodes))
     }
 
-    pub(super) fn save(&self) -> Vec<Section> {
-        let nodes = self.nodes.iter().map(|node| {
-            let mut section = Section::new(self.section_of(node));
-            node.solver.save(&mut section);
-            section
-        });
-        let edges = self.edges.iter().enumerate().map(|(k, edge)| {
-            let mut section = Section::new(section_of_edge(k, edge.law()));
-            edge.save(&mut section);
-            section
-        });
-        nodes.chain(edges).collect()
+    /// Calls `visit` with the name of each section and what puts its entries.
+    pub(super) fn each_section(&self, visit: &mut VisitSection<'_>) {
+        for node in &self.nodes {
+            visit(&self.section_of(node), &|section| node.solver.save(section));
+        }
+        for (k, edge) in self.edges.iter().enumerate() {
+            visit(&section_of_edge(k, edge.law()), &|section| edge.save(section));
+        }
     }
 
     pub(super) fn restore(&mut self, sections: &[Section]) -> Result<(), SnapshotError> {

@@ -27,6 +27,7 @@ const TESTS: &[Test] = &[
     Contract::allocations,
     Contract::limits,
     Contract::show,
+    Contract::passing_on,
 ];
 
 /// Tests that the toy with this fault does not pass, by their place in [`TESTS`].
@@ -68,6 +69,7 @@ fn every_fault_is_caught_by_the_test_of_its_promise_and_no_other() {
         (Fault::SamePlaceTwice, 8),
         (Fault::UnknownPlace, 8),
         (Fault::AtAnotherPlace, 8),
+        (Fault::CopiesToSave, 9),
     ];
     for (fault, test) in expected {
         assert_eq!(caught(fault), [test], "{fault:?}");

@@ -4,12 +4,17 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail like tests")]
 
 mod files;
+mod hash;
 #[cfg(unix)]
 mod kill;
 mod places;
 mod resume;
 
 use std::path::PathBuf;
+
+#[global_allocator]
+static ALLOCATOR: granular_core::testing::CountingAllocator =
+    granular_core::testing::CountingAllocator::new();
 
 /// A folder in the build folder, empty at first.
 fn folder(name: &str) -> PathBuf {

@@ -95,7 +95,7 @@ fn a_lid_that_moves_with_a_block_and_the_fluid_disturbs_nothing() {
         lbm.set_flow(|_| Flow { pressure: 0.0, velocity });
         for step in 0..40 {
             let position = DVec2::new(8.5, 2.0) + velocity * (f64::from(step) + 0.5);
-            Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[0] = Motion { position, velocity, spin: 0.0 };
+            Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[0] = Motion::new(position, velocity, 0.0);
             lbm.advance(1.0, 1).unwrap();
         }
         for (x, y) in (0..20).flat_map(|x| (0..12).map(move |y| (x, y))) {
@@ -117,7 +117,7 @@ fn loads<L: Lattice<Q>, const Q: usize>(
     for step in 0..150 {
         let position = start.position + velocity * (f64::from(step) + 0.5);
         let lent: &mut [Motion<L::Dim>] = Accepts::<ObstacleMotion<L::Dim>>::view_mut(&mut lbm);
-        lent[0] = Motion { position, velocity, spin: start.spin };
+        lent[0] = Motion::new(position, velocity, start.spin);
         lbm.advance(1.0, 1).unwrap();
     }
     let velocities = cells.iter().map(|cell| lbm.flow(*cell).map_or([0.0; 3], |f| f.velocity.padded()));

@@ -116,7 +116,7 @@ fn a_disk_that_goes_to_and_fro_in_a_closed_box_keeps_the_mean_density() {
             let angle = 2.0 * PI * (f64::from(step) + 0.5) / 1000.0;
             let (place, velocity) = (DVec2::new(9.0, 4.0) * angle.sin(), DVec2::new(9.0, 4.0) * angle.cos());
             let position = DVec2::new(20.0, 19.7) + place;
-            let motion = Motion { position, velocity: velocity * (2.0 * PI / 1000.0), spin: 0.003 };
+            let motion = Motion::new(position, velocity * (2.0 * PI / 1000.0), 0.003);
             Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[0] = motion;
             lbm.advance(1.0, 1).unwrap();
             largest = largest.max(lbm.excess().abs() / 1512.0);
@@ -162,8 +162,7 @@ fn disks_that_touch_and_move_with_a_stream_disturb_nothing() {
         for step in 0..60 {
             for (k, centre) in centres.into_iter().enumerate() {
                 let position = centre + velocity * (f64::from(step) + 0.5);
-                Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[k] =
-                    Motion { position, velocity, spin: 0.0 };
+                Accepts::<ObstacleMotion<D2>>::view_mut(&mut lbm)[k] = Motion::new(position, velocity, 0.0);
             }
             lbm.advance(1.0, 1).unwrap();
         }

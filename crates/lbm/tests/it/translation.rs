@@ -37,7 +37,7 @@ fn run<L: Lattice<Q>, const Q: usize>(
         for (k, (velocity, spin)) in velocities.iter().enumerate() {
             let position = start[k].position + *velocity * (step as f64 + 0.5);
             let lent: &mut [Motion<L::Dim>] = Accepts::<ObstacleMotion<L::Dim>>::view_mut(&mut lbm);
-            lent[k] = Motion { position, velocity: *velocity, spin: *spin };
+            lent[k] = Motion::new(position, *velocity, *spin);
         }
         lbm.advance(1.0, 1).unwrap();
     }
