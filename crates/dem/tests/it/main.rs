@@ -14,6 +14,7 @@ mod frames;
 mod hertz;
 mod impact;
 mod incline;
+mod law_page;
 mod lists;
 mod memory;
 mod moving_walls;
