@@ -15,6 +15,7 @@ mod hertz;
 mod impact;
 mod incline;
 mod inlets;
+mod law_page;
 mod lists;
 mod loads;
 mod memory;
