@@ -22,8 +22,8 @@ pub trait Solver: Any + Send {
     fn hard_limits(&self, report: &mut Limits) {
         self.limits(report);
     }
-    /// Whether [`Solver::hard_limits`] may change while steps are taken. A solver alone whose limits follow from its setup is
-    /// asked at the start of a segment only.
+    /// Whether [`Solver::hard_limits`] should be asked for again while a solver alone takes steps. Not where they follow from its
+    /// setup, nor where [`Solver::advance`] itself refuses a step that has become too long. Among several solvers all are asked.
     fn hard_limits_may_change(&self) -> bool {
         true
     }

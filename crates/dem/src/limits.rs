@@ -71,13 +71,6 @@ impl<D: Dim> Dem<D> {
         self.report_stability(&self.stiffest_pairs(false), report);
     }
 
-    /// Whether stability depends on speeds, or on the number of grains.
-    pub(crate) fn stability_depends_on_the_state(&self) -> bool {
-        self.options.contact == ContactModel::Hertz
-            || self.moving_walls.servos().next().is_some()
-            || self.inlets.inlets().next().is_some()
-    }
-
     /// Steps that resolve a contact.
     fn report_accuracy(&self, stiffest: &[Stiffest], report: &mut Limits) {
         let by =

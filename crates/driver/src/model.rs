@@ -84,13 +84,14 @@ pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
         return Err(problems.0);
     }
     methods::unused::refuse_unused(scene, &mut problems);
+    let before = problems.0.len();
     if parts::groups(scene).len() > 1 {
         let names: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
         let hint = "a run takes solvers that nothing joins apart, each into a folder of its own";
         problems.add("solvers", names.join(", "), "solvers that are joined by `couplings`", hint);
     }
     couplings::check(scene, &mut problems);
-    if !problems.0.is_empty() {
+    if problems.0.len() > before {
         return Err(problems.0);
     }
     let (mut building, mut members) = (Building::default(), Vec::new());

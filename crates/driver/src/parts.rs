@@ -34,10 +34,14 @@ pub fn of(text: &SceneText) -> Result<Vec<Part>, Failure> {
 /// Solvers that laws join, by their names.
 pub(crate) fn groups(scene: &Scene) -> Vec<Vec<&str>> {
     let mut groups: Vec<Vec<&str>> = scene.solvers.keys().map(|name| vec![name.as_str()]).collect();
+    let known = |name: &str| scene.solvers.contains_key(name);
+    if scene.couplings.iter().any(|law| !(known(law.ends().slow.1) && known(law.ends().fast.1))) {
+        // What is meant is not known: the whole is built, and refused.
+        return vec![groups.concat()];
+    }
     for law in &scene.couplings {
         let ends = law.ends();
         let place = |name: &str, groups: &[Vec<&str>]| groups.iter().position(|group| group.contains(&name));
-        // An end that is no solver is told elsewhere.
         let (Some(a), Some(b)) = (place(ends.slow.1, &groups), place(ends.fast.1, &groups)) else { continue };
         if a != b {
             let moved = groups.remove(a.max(b));

@@ -19,7 +19,18 @@ pub(crate) fn refuse_unused(scene: &Scene, problems: &mut Problems) {
             _ if would.is_empty() => format!("{named}, {verb} it"),
             _ => format!("{named}, {verb} it; {} does", would.join(" or ")),
         };
-        problems.add(path, value, "nothing here", hint);
+        problems.add(path, value, instead(part, &uses), hint);
+    }
+}
+
+/// What may stand in the place of a part, when its methods use some parts.
+fn instead(part: Part, uses: &dyn Fn(Part) -> bool) -> &'static str {
+    match part {
+        Part::Quiet | Part::Packed => "For or Steady",
+        Part::GrainChanges if uses(Part::FluidChanges) => "FaceVelocity, ObstacleSpin or Gravity",
+        Part::FluidChanges if uses(Part::GrainChanges) => "a change of grains, walls or the cell",
+        Part::GrainChanges | Part::FluidChanges => "no change",
+        _ => "nothing here",
     }
 }
 

@@ -235,7 +235,7 @@ mod tests {
             ("a=\"x", "does not end"),
             ("a=0.2..1", "needs a count"),
             ("a=5..1", "goes up"),
-            ("a=1..x", "no number"),
+            ("a=1..x", "is not a number"),
             ("a=0.2..1:1", "from 2 to"),
             ("a=0..1:log3", "above zero"),
         ];

@@ -104,7 +104,11 @@ const REFUSED: &[(&str, i32, &[&str])] = &[
     ("solvers.oil=Dem(())", 2, &["`sample` is missing", "`fluid` is given"]),
     ("stages.0.time_step=\"1 ms\"", 2, &["`stages.0.time_step`", "set solvers.oil.step"]),
     ("stages.0.end=Quiet(kinetic_over_potential: 1, within: 1)", 2, &["`stages.0.end`", "For or Steady"]),
-    ("stages.1.changes=[StopMotion]", 2, &["`stages.1.changes.0`", "Gravity, for a fluid"]),
+    (
+        "stages.1.changes=[StopMotion]",
+        2,
+        &["`stages.1.changes.0`", "ObstacleSpin or Gravity", "`oil` is Lbm, which does not use it; Dem does"],
+    ),
     ("outputs.2.write.to=[\"20 mm\", \"31 mm\"]", 2, &["outside the fluid", "a line in the fluid"]),
     ("outputs.0.write.probes=[\"drag_coefficient_of_step\"]", 2, &["which nothing shows"]),
     ("figures.0.range=[2, 1]", 2, &["`figures.0.range`", "the lower one first"]),

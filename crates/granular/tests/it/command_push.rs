@@ -46,8 +46,8 @@ fn a_push_is_announced_given_and_measured() {
     scratch.granular(&["run", "push.ron", "--out", "run", "-q", "--threads", "1"]).expect(0);
     let facts = facts(&scratch.path("run"));
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
-    let push = &facts["stages"][1]["push"];
-    assert!(facts["stages"][0].get("push").is_none());
+    let push = &facts["stages"][1]["solvers"]["grains"]["push"];
+    assert!(facts["stages"][0]["solvers"]["grains"].get("push").is_none());
     let scale = ["mass", "gravity", "diameter"].iter().map(|key| number(&push[*key])).product::<f64>();
     assert!((number(&push["energy"]) / scale - 12.0).abs() < 1e-12, "{push}");
     let metrics = &facts["metrics"];
@@ -59,7 +59,7 @@ fn a_push_is_announced_given_and_measured() {
     let start = number(&facts["stages"][1]["start"]);
     let at = column("time").iter().position(|time| *time > start).unwrap();
     let run_out = number(&metrics["impact_runout"]);
-    let first = number(&facts["stages"][1]["front"]);
+    let first = number(&facts["stages"][1]["solvers"]["grains"]["front"]);
     assert!(
         (column("front").last().unwrap() / first - 1.0 - run_out).abs() < 1e-12 && run_out > 0.3,
         "{run_out}"

@@ -73,7 +73,8 @@ fn methods_that_nothing_joins_run_apart_and_are_compared() {
     let rows = found["rows"].as_array().unwrap();
     let of =
         |name: &str| rows.iter().find(|row| row["quantity"] == name && !row["difference"].is_null()).unwrap();
-    assert_eq!(of("height")["difference"]["largest"], 0.0);
+    // Steps of the grains divide those of the lattice where they are joined.
+    assert!(of("height")["difference"]["largest"].as_f64().unwrap().abs() < 1e-5);
     assert!(of("kinetic_energy")["difference"]["largest"].as_f64().unwrap() != 0.0);
     for file in ["compare.csv", "compare.svg", "compare.png"] {
         assert!(scratch.path("compare").join(file).is_file(), "{file}");
