@@ -412,9 +412,10 @@ impl fmt::Display for Report {
             writeln!(f, "  {advice}")?;
         }
         writeln!(f)?;
-        for Part { memory, size: (_, item), .. } in &self.solvers {
+        for Part { name, memory, size: (_, item), .. } in &self.solvers {
             let megabytes = memory.bytes as f64 / 1e6;
-            writeln!(f, "memory    {megabytes:.2} MB, {} bytes per {item}", memory.bytes_per_item)?;
+            let of = if self.solvers.len() > 1 { format!("{name}: ") } else { String::new() };
+            writeln!(f, "memory    {of}{megabytes:.2} MB, {} bytes per {item}", memory.bytes_per_item)?;
         }
         let threads = rayon::current_num_threads();
         let packs = self.solvers.iter().any(|part| part.size.1 == "grain");

@@ -6,7 +6,7 @@ use std::fs;
 /// Grains that carry obstacles through a fluid, on fewer cells.
 const JOINED: [&str; 2] = ["solvers.water.spacing=1 mm", "stages.0.end=For(\"40 ms\")"];
 /// What needs later times.
-const DRAWN: [&str; 2] = ["figures.0.times=[0.02]", "figures.2.times=[0.02]"];
+const DRAWN: [&str; 1] = ["figures.0.times=[0.02]"];
 
 fn scratch(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
