@@ -2,7 +2,9 @@
 
 use crate::methods::member::Member;
 use granular_core::{Every, Flow, Observer, ObserverError, Scheduled, Simulation};
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
+use indicatif::{
+    MultiProgress, ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle,
+};
 use std::io::Write;
 use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
@@ -54,7 +56,12 @@ fn stage_bar(name: &str, target: ProgressDrawTarget) -> ProgressBar {
 /// How many runs of a sweep are over, with an estimate of the time left; drawn on a terminal only.
 pub(crate) fn runs(count: usize) -> ProgressBar {
     let bar = BARS.add(ProgressBar::new(count as u64).with_finish(ProgressFinish::AndClear));
-    bar.set_style(style("{pos} of {len} runs {bar:20} {elapsed}, about {eta} left"));
+    // Nothing is known of the time left before the first run is over.
+    let left = |state: &ProgressState, to: &mut dyn std::fmt::Write| {
+        let known = state.pos() > 0;
+        let _ = known.then(|| write!(to, ", about {} left", duration(state.eta().as_secs_f64())));
+    };
+    bar.set_style(style("{pos} of {len} runs {bar:20} {elapsed}{left}").with_key("left", left));
     bar
 }
 
@@ -65,8 +72,8 @@ fn style(template: &str) -> ProgressStyle {
 }
 
 impl Progress {
-    /// Time, step, rate and worst number, and how long it takes at most from here.
-    fn told(&mut self, simulation: &Simulation) -> String {
+    /// The time, then step, rate and worst number, and how long it takes at most from here.
+    fn told(&mut self, simulation: &Simulation) -> [String; 3] {
         let clock = simulation.clock();
         let (size, item) = simulation.solver().size();
         let now = (Instant::now(), clock.step(), clock.time());
@@ -77,15 +84,12 @@ impl Progress {
         let worst = self.members.iter().map(|member| member.progress(simulation));
         let worst = worst.collect::<Vec<_>>().join("  ");
         let left = (self.stage.end - clock.time()).max(0.0) / pace;
-        format!(
-            "{:.4}/{:.4} s  step {}  dt {:.2e} s  {:.2e} {item}-steps/s  {worst}  at most {} left",
-            clock.time(),
-            self.stage.end,
-            clock.step(),
-            clock.dt(),
-            rate * size as f64,
-            duration(left),
-        )
+        let (step, dt, rate) = (clock.step(), clock.dt(), rate * size as f64);
+        [
+            format!("{:.4}/{:.4} s", clock.time(), self.stage.end),
+            format!("step {step}  dt {dt:.2e} s  {rate:.2e} {item}-steps/s  {worst}"),
+            format!("at most {} left", duration(left)),
+        ]
     }
 
     /// Share of the stage, or of what was left of it, that is over.
@@ -97,14 +101,15 @@ impl Progress {
 
 impl Observer for Progress {
     fn observe(&mut self, simulation: &Simulation) -> Result<Flow, ObserverError> {
-        let told = self.told(simulation);
+        let [time, work, left] = self.told(simulation);
         let share = self.share(simulation.clock().time());
         match &self.bar {
             Some(bar) => {
-                bar.set_message(told);
+                // A terminal may be narrow: what matters most comes first.
+                bar.set_message(format!("{time}  {left}  {work}"));
                 bar.set_position((share * POSITIONS as f64) as u64);
             }
-            None => say(format_args!("{}  {told}", self.stage.name)),
+            None => say(format_args!("{}  {time}  {work}  {left}", self.stage.name)),
         }
         Ok(Flow::Continue)
     }
