@@ -1,7 +1,8 @@
 //! Scenes of several methods that nothing joins: the same problem solved in several ways, each as a run of its own.
 
 use crate::failure::Failure;
-use crate::methods;
+use crate::methods::{self, couplings};
+use crate::problems::Problems;
 use crate::scene::Scene;
 use crate::scene_file::SceneText;
 
@@ -34,8 +35,9 @@ pub fn of(text: &SceneText) -> Result<Vec<Part>, Failure> {
 /// Solvers that laws join, by their names.
 pub(crate) fn groups(scene: &Scene) -> Vec<Vec<&str>> {
     let mut groups: Vec<Vec<&str>> = scene.solvers.keys().map(|name| vec![name.as_str()]).collect();
-    let known = |name: &str| scene.solvers.contains_key(name);
-    if scene.couplings.iter().any(|law| !(known(law.ends().slow.1) && known(law.ends().fast.1))) {
+    let mut problems = Problems::default();
+    couplings::check(scene, &mut problems);
+    if !problems.0.is_empty() {
         // What is meant is not known: the whole is built, and refused.
         return vec![groups.concat()];
     }
