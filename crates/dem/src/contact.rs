@@ -29,6 +29,16 @@ pub struct Contact<D: Dim> {
     pub torque: D::Spin,
     /// Energy stored in the springs \[J\].
     pub energy: f64,
+    /// Tangential spring as `normal x` the displacement of the first body past the second \[m\]; zero for laws without one.
+    /// In this form it is the same seen from either body.
+    pub spring: D::Spin,
+}
+
+impl<D: Dim> Contact<D> {
+    /// Displacement \[m\] of the first body past the second that the tangential spring holds.
+    pub fn tangential_displacement(&self) -> D::Vec {
+        D::turn(self.spring, self.normal)
+    }
 }
 
 /// The second body of a contact.
@@ -60,5 +70,6 @@ pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
         force: push_of::<D, L>(&load, kinematics.normal),
         torque: load.rolling,
         energy,
+        spring: law.spring(kinematics, &memory),
     }
 }

@@ -10,7 +10,7 @@ use crate::grains::Grains;
 use crate::kinematics::overlapping;
 use crate::law::ContactLaw;
 use crate::ledger::{Losses, Tally};
-use crate::lists::{BlockList, Places, Receipt, places, spare};
+use crate::lists::{BlockList, NearWall, Places, Receipt, places, spare};
 use crate::material::{Materials, Tension};
 use crate::pass::{Kernel, Owed, Trouble};
 use crate::periodic::PeriodicCell;
@@ -45,6 +45,8 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn visit(&self, view: &View<'_, D>, visit: &mut dyn FnMut(Contact<D>));
     /// Visits all listed pairs of grains, with the distance of their centres.
     fn visit_listed(&self, view: &View<'_, D>, visit: &mut dyn FnMut(usize, usize, f64));
+    /// Sets the tangential spring of a contact that overlaps. Returns whether there is one whose law remembers a spring.
+    fn set_spring(&mut self, view: &View<'_, D>, first: usize, partner: Partner, spring: D::Spin) -> bool;
     /// For each axis, the sum over contacts across faces of the cell of the force on the first grain
     /// times the edges between the grains \[N\].
     fn pull(&self) -> [D::Vec; 3];
@@ -153,6 +155,56 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
                 visit(Contact { shift: pair.shift, ..contact });
             }
         }
+    }
+
+    fn set_spring_of_pair(
+        &mut self,
+        view: &View<'_, D>,
+        first: usize,
+        second: usize,
+        spring: D::Spin,
+    ) -> bool {
+        let laws = Laws { list: &self.laws, materials: self.materials };
+        let law = laws.between(view.material_of(first), view.material_of(second));
+        let block = first / self.blocks.size();
+        if let Some(kinematics) = overlapping::<D, L>(view, first, second) {
+            let spring = D::tangential(spring, kinematics.normal);
+            return self.lists[block].set_memory(self.blocks.range(block).start, (first, second), |memory| {
+                law.with_spring(&kinematics, memory, spring)
+            });
+        }
+        let (Some(cell), Some(images)) = (view.cell, self.images.get_mut(block)) else { return false };
+        for (pair, memory) in images.pairs.iter().zip(&mut images.memory) {
+            if (pair.first as usize, pair.second as usize) != (first, second) {
+                continue;
+            }
+            let Some((kinematics, ..)) = meet_image::<D, L>(view, cell, pair, 0.0) else { continue };
+            let spring = D::tangential(spring, kinematics.normal);
+            let changed = law.with_spring(&kinematics, *memory, spring);
+            *memory = changed.unwrap_or(*memory);
+            return changed.is_some();
+        }
+        false
+    }
+
+    fn set_spring_at_wall(&mut self, view: &View<'_, D>, first: usize, wall: usize, spring: D::Spin) -> bool {
+        let laws = Laws { list: &self.laws, materials: self.materials };
+        let law = laws.between(view.material_of(first), view.walls[wall].material.0);
+        let met = if view.poses.is_empty() {
+            meet_wall::<D, L, false>(view, first, wall)
+        } else {
+            meet_wall::<D, L, true>(view, first, wall)
+        };
+        let Some((kinematics, _)) = met.filter(|(kinematics, _)| kinematics.overlap > 0.0) else {
+            return false;
+        };
+        let list = &mut self.lists[first / self.blocks.size()];
+        let near = NearWall { grain: first as u32, wall: wall as u32 };
+        let Ok(place) = list.near_walls.binary_search(&near) else { return false };
+        let spring = D::tangential(spring, kinematics.normal);
+        let changed = law.with_spring(&kinematics, list.wall_memory[place], spring);
+        list.wall_memory[place] = changed.unwrap_or(list.wall_memory[place]);
+        changed.is_some()
     }
 
     fn push_ledger<const LEDGER: bool>(
@@ -357,6 +409,15 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             let (first, second) = (pair.first as usize, pair.second as usize);
             let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
             visit(first, second, branch.length());
+        }
+    }
+
+    fn set_spring(&mut self, view: &View<'_, D>, first: usize, partner: Partner, spring: D::Spin) -> bool {
+        match partner {
+            Partner::Grain(second) => {
+                self.set_spring_of_pair(view, first.max(second), first.min(second), spring)
+            }
+            Partner::Wall(wall) => self.set_spring_at_wall(view, first, wall, spring),
         }
     }
 

@@ -1,7 +1,10 @@
 //! The solver: set-up, the step, and changes between stages.
 
 mod changes;
+mod single;
 mod step;
+
+pub use single::Body;
 
 use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
@@ -11,7 +14,7 @@ use crate::law::ContactLaw;
 use crate::ledger::Losses;
 use crate::material::{MaterialId, Materials, SetupError};
 use crate::periodic::PeriodicCell;
-use crate::setup::{LeverArm, Options, Setup, check_options, check_stiffness};
+use crate::setup::{LeverArm, Options, Setup, SpringTurning, check_options, check_stiffness};
 use crate::shaking::Shaken;
 use crate::view::View;
 use crate::walls::Wall;
@@ -56,6 +59,9 @@ pub struct Dem<D: Dim> {
     /// The last step taken \[s\].
     pub(crate) last_dt: f64,
     custom_law: bool,
+    /// Whether what bounds the step changed since the last one was checked.
+    pub(crate) unchecked: bool,
+    any_step: bool,
     skin: f64,
     /// Reach of the present lists \[m\].
     pub(crate) reach: f64,
@@ -130,6 +136,8 @@ impl<D: Dim> Dem<D> {
             steps: 0,
             last_dt: 0.0,
             custom_law,
+            unchecked: true,
+            any_step: false,
             largest: 0.0,
             travel: 0.0,
         };
@@ -156,6 +164,28 @@ impl<D: Dim> Dem<D> {
     /// Whether grains turn; if not, there are no arrays of spins.
     pub fn turns(&self) -> bool {
         self.grains.turns
+    }
+
+    /// Lets [`advance`](Solver::advance) take steps beyond the [stability limit](Dem::stable_step), which it refuses
+    /// otherwise: for studies of what happens there. The limit is that of the stiffest meeting that the scene allows, with
+    /// as many contacts per grain as can be; single contacts bear more.
+    pub fn allow_any_step(&mut self) {
+        self.any_step = true;
+    }
+
+    /// Refuses a step beyond the stability limit. The limit is looked for when a step becomes longer, and after changes.
+    fn check_stability(&mut self, dt: f64) -> Result<(), StepError> {
+        if self.any_step || (dt <= self.last_dt && !self.unchecked) {
+            return Ok(());
+        }
+        let mut limits = Limits::default();
+        self.report_limits(&mut limits);
+        if let Some(limit) = limits.largest_allowed().filter(|limit| dt > limit.dt * (1.0 + 1e-9)) {
+            let why = format!("it must be at most {:.4e} s: {} ({})", limit.dt, limit.name, limit.why);
+            return Err(StepError::Step { dt, why });
+        }
+        self.unchecked = false;
+        Ok(())
     }
 
     /// Makes room for spins, if there is none.
@@ -314,7 +344,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         start_velocity: &grains.velocity,
         start_spin: &grains.spin,
         radius: &grains.radius,
-        mass: &grains.mass,
+        mass: grains.contact_mass(),
         material: &grains.material,
         first_material: grains.first_material,
         walls,
@@ -324,6 +354,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         last_dt,
         predicts: true,
         margin: 0.0,
+        twist_share: if options.spring_turning == SpringTurning::MeanSpin { 0.5 } else { 0.0 },
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
     }
 }
@@ -359,6 +390,7 @@ impl<D: Dim> Solver for Dem<D> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         check_step(dt)?;
+        self.check_stability(dt)?;
         self.clock.run_at(dt);
         self.blocks.inside_pool(|| self.take_steps(dt, steps))
     }

@@ -58,6 +58,12 @@ pub(crate) struct Grains<D: Dim> {
     pub(crate) first_material: u8,
     /// Whether grains turn; with no grains the arrays do not tell.
     pub(crate) turns: bool,
+    /// Moments of inertia where some are given \[kg m^2\]; empty where all are those of uniform balls.
+    pub(crate) inertia: Vec<f64>,
+    /// Grains that are held in their place; empty when none is.
+    pub(crate) fixed: Vec<bool>,
+    /// Masses as contacts see them, those of fixed grains without end; empty when none is fixed.
+    contact_mass: Vec<f64>,
     /// Whether others put loads on grains.
     pub(crate) takes_loads: bool,
     /// Loads that others put on grains, such as those of a fluid; empty unless one does.
@@ -130,6 +136,13 @@ impl<D: Dim> Grains<D> {
         if self.takes_loads {
             self.load.push(Load::ZERO);
         }
+        if !self.inertia.is_empty() {
+            self.inertia.push(D::BALL_INERTIA * mass * grain.radius * grain.radius);
+        }
+        if !self.fixed.is_empty() {
+            self.fixed.push(false);
+            self.contact_mass.push(mass);
+        }
         if self.turns {
             self.spin.push(grain.spin);
             self.spin_acceleration.push(D::Spin::ZERO);
@@ -147,6 +160,9 @@ impl<D: Dim> Grains<D> {
         keep(&mut self.id, stays);
         keep(&mut self.material, stays);
         keep(&mut self.load, stays);
+        keep(&mut self.inertia, stays);
+        keep(&mut self.fixed, stays);
+        keep(&mut self.contact_mass, stays);
         keep(&mut self.spin, stays);
         keep(&mut self.spin_acceleration, stays);
         keep(&mut self.middle_velocity, stays);
@@ -177,6 +193,9 @@ impl<D: Dim> Grains<D> {
         permute(&mut self.id, &order);
         permute(&mut self.material, &order);
         permute(&mut self.load, &order);
+        permute(&mut self.inertia, &order);
+        permute(&mut self.fixed, &order);
+        permute(&mut self.contact_mass, &order);
         permute(&mut self.spin, &order);
         permute(&mut self.spin_acceleration, &order);
         order
@@ -188,7 +207,9 @@ impl<D: Dim> Grains<D> {
         let material = if self.material.is_empty() { 0 } else { 1 };
         let rotation = if self.spin.is_empty() { 0 } else { 3 * size_of::<D::Spin>() };
         let load = if self.takes_loads { size_of::<Load<D>>() } else { 0 };
-        vectors + material + rotation + load
+        let own = if self.inertia.is_empty() { 0 } else { size_of::<f64>() };
+        let fixed = if self.fixed.is_empty() { 0 } else { size_of::<f64>() + 1 };
+        vectors + material + rotation + load + own + fixed
     }
 
     pub(crate) fn save(&self, to: &mut Section) {
@@ -201,6 +222,12 @@ impl<D: Dim> Grains<D> {
         to.put("material", &self.material);
         to.put("spin", &self.spin);
         to.put("spin acceleration", &self.spin_acceleration);
+        if !self.inertia.is_empty() {
+            to.put(INERTIA, &self.inertia);
+        }
+        if !self.fixed.is_empty() {
+            to.put(FIXED, &self.fixed.iter().map(|&fixed| u8::from(fixed)).collect::<Vec<_>>());
+        }
         if self.takes_loads {
             to.put(LOADS[0], &self.load.iter().map(|load| load.force).collect::<Vec<_>>());
             to.put(LOADS[1], &self.load.iter().map(|load| load.torque).collect::<Vec<_>>());
@@ -225,6 +252,7 @@ impl<D: Dim> Grains<D> {
         self.spin = from.array_of("spin", turning)?;
         self.spin_acceleration = from.array_of("spin acceleration", turning)?;
         self.restore_loads(from, all)?;
+        self.restore_particulars(from, all)?;
         check_entry("position", self.position.iter().all(|x| x.is_finite()))?;
         check_entry("velocity", self.velocity.iter().all(|v| v.is_finite()))?;
         check_entry("acceleration", self.acceleration.iter().all(|a| a.is_finite()))?;
@@ -237,8 +265,85 @@ impl<D: Dim> Grains<D> {
 
 /// Names in a snapshot.
 const LOADS: [&str; 2] = ["force of loads", "torque of loads"];
+const INERTIA: &str = "moments of inertia";
+const FIXED: &str = "fixed grains";
+/// Mass of a fixed grain in contacts \[kg\]: the effective mass of a contact is
+/// then that of the other grain, to the last bit but one.
+const WITHOUT_END: f64 = 1e30;
 
 impl<D: Dim> Grains<D> {
+    /// Moment of inertia of a grain \[kg m^2; kg m in the plane\].
+    pub(crate) fn inertia_of(&self, index: usize) -> f64 {
+        let uniform = || D::BALL_INERTIA * self.mass[index] * self.radius[index].powi(2);
+        self.inertia.get(index).copied().unwrap_or_else(uniform)
+    }
+
+    /// Masses \[kg\] as contacts see them.
+    pub(crate) fn contact_mass(&self) -> &[f64] {
+        if self.contact_mass.is_empty() { &self.mass } else { &self.contact_mass }
+    }
+
+    /// Whether some grain is not a free uniform ball.
+    pub(crate) fn has_particulars(&self) -> bool {
+        !(self.inertia.is_empty() && self.fixed.is_empty())
+    }
+
+    /// Largest ratio of `mass radius^2` to the moment of inertia.
+    pub(crate) fn lightest_to_turn(&self) -> f64 {
+        let ratio = |index: usize| self.mass[index] * self.radius[index].powi(2) / self.inertia[index];
+        (0..self.inertia.len()).map(ratio).fold(1.0 / D::BALL_INERTIA, f64::max)
+    }
+
+    pub(crate) fn set_inertia(&mut self, index: usize, inertia: f64) {
+        if self.inertia.is_empty() {
+            self.inertia = (0..self.len()).map(|index| self.inertia_of(index)).collect();
+        }
+        self.inertia[index] = inertia;
+    }
+
+    /// Another mass \[kg\]; the moment of inertia changes with it.
+    pub(crate) fn set_mass(&mut self, index: usize, mass: f64) {
+        if let Some(inertia) = self.inertia.get_mut(index) {
+            *inertia *= mass / self.mass[index];
+        }
+        self.mass[index] = mass;
+        self.take_contact_masses();
+    }
+
+    /// Holds a grain at rest or lets it go.
+    pub(crate) fn set_fixed(&mut self, index: usize, fixed: bool, gravity: D::Vec) {
+        if self.fixed.is_empty() {
+            self.fixed = vec![false; self.len()];
+        }
+        self.fixed[index] = fixed;
+        self.acceleration[index] = if fixed { D::Vec::ZERO } else { gravity };
+        if fixed {
+            self.velocity[index] = D::Vec::ZERO;
+            if self.turns {
+                (self.spin[index], self.spin_acceleration[index]) = (D::Spin::ZERO, D::Spin::ZERO);
+            }
+        }
+        if !self.fixed.contains(&true) {
+            self.fixed = Vec::new();
+        }
+        self.take_contact_masses();
+    }
+
+    fn take_contact_masses(&mut self) {
+        let mass = |(&fixed, &mass): (&bool, &f64)| if fixed { WITHOUT_END } else { mass };
+        self.contact_mass = self.fixed.iter().zip(&self.mass).map(mass).collect();
+    }
+
+    fn restore_particulars(&mut self, from: &Section, all: usize) -> Result<(), SnapshotError> {
+        let has = |entry: &str| from.entries().any(|(name, _)| name == entry);
+        self.inertia = if has(INERTIA) { from.array_of(INERTIA, all)? } else { Vec::new() };
+        check_entry(INERTIA, self.inertia.iter().all(|inertia| inertia.is_finite() && *inertia > 0.0))?;
+        let fixed: Vec<u8> = if has(FIXED) { from.array_of(FIXED, all)? } else { Vec::new() };
+        self.fixed = fixed.into_iter().map(|fixed| fixed != 0).collect();
+        self.take_contact_masses();
+        Ok(())
+    }
+
     /// Loads of a snapshot; none where it has none and nothing asks for them.
     fn restore_loads(&mut self, from: &Section, all: usize) -> Result<(), SnapshotError> {
         self.takes_loads |= from.entries().any(|(name, _)| name == LOADS[0]);

@@ -74,7 +74,7 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
         // Within the tangent plane of now, or the moments on the two bodies would not balance.
         kinematics.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
         kinematics.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
-        kinematics.twist = 0.5 * D::twist(own.start_spin + other.start_spin, normal);
+        kinematics.twist = view.twist_share * D::twist(own.start_spin + other.start_spin, normal);
         if L::TWISTING {
             kinematics.twisting = D::twist(own.spin - other.spin, normal);
             kinematics.start_twisting = D::twist(own.start_spin - other.start_spin, normal);

@@ -41,7 +41,8 @@ pub struct Kinematics<D: Dim> {
     pub start_slip: D::Spin,
     /// The roll at the start of the step \[rad/s\].
     pub start_roll: D::Spin,
-    /// Mean spin about the normal at the start of the step \[rad/s\].
+    /// Spin about the normal with which tangential springs turn \[rad/s\]: the mean of both at the start of the step, or
+    /// nothing, see [`SpringTurning`](crate::SpringTurning).
     pub twist: f64,
     /// Difference of the spins about the normal \[rad/s\]; only for laws that resist twisting.
     pub twisting: f64,
@@ -153,6 +154,22 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     }
     /// The same contact seen from the second body.
     fn reversed(memory: Self::Memory) -> Self::Memory;
+    /// The tangential spring \[m\] that a contact remembers, as `n x` the displacement of the first body, at the time between
+    /// steps; zero for laws without one.
+    fn spring(&self, kinematics: &Kinematics<D>, memory: &Self::Memory) -> D::Spin {
+        let _ = (kinematics, memory);
+        D::Spin::ZERO
+    }
+    /// The memory with such a spring in place of its own; none for laws that remember none.
+    fn with_spring(
+        &self,
+        kinematics: &Kinematics<D>,
+        memory: Self::Memory,
+        spring: D::Spin,
+    ) -> Option<Self::Memory> {
+        let _ = (kinematics, memory, spring);
+        None
+    }
     /// The load between steps and the energy stored in springs \[J\], for output. The step of the
     /// kinematics is the last one taken.
     fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (Load<D>, f64);

@@ -65,7 +65,7 @@ mod view;
 pub mod walls;
 
 pub use contact::{Contact, Partner};
-pub use dem::Dem;
+pub use dem::{Body, Dem};
 pub use grains::Grain;
 pub use granular_core::coarse::{CoarseFields, CoarseGrid};
 pub use granular_core::shape::{Facets, Shape};
@@ -82,7 +82,7 @@ pub use material::{
 };
 pub use periodic::{CellControl, Control, Matrix, PeriodicCell};
 pub use push::{Push, PushProfile, Pushed, Strength};
-pub use setup::{ContactModel, LeverArm, Options, Setup};
+pub use setup::{ContactModel, LeverArm, Options, Setup, SpringTurning};
 pub use shaking::Shaking;
 pub use show::Energies;
 pub use walls::{Falling, Gates, Wall};

@@ -89,8 +89,8 @@ impl<D: Dim> Dem<D> {
     /// Steps beyond which the scheme is unstable.
     fn report_stability(&self, stiffest: &[Stiffest], report: &mut Limits) {
         let neighbours = self.most_neighbours();
-        let turns = self.turns();
-        let step = |pair: &Stiffest| pair.oscillator.largest_step::<D>(neighbours, turns);
+        let turns = self.pairs.tangential().then(|| self.grains.lightest_to_turn());
+        let step = |pair: &Stiffest| pair.oscillator.largest_step(neighbours, turns);
         let Some(tightest) = stiffest.iter().min_by(|a, b| step(a).total_cmp(&step(b))) else { return };
         report.steps.push(StepLimit::at_most(
             "stability",
@@ -303,5 +303,6 @@ pub fn stability_step<D: Dim>(
     neighbours: usize,
     turns: bool,
 ) -> f64 {
-    Oscillator::linear(pair, effective_mass, pair.zeta(tension)).largest_step::<D>(neighbours, turns)
+    Oscillator::linear(pair, effective_mass, pair.zeta(tension))
+        .largest_step(neighbours, turns.then_some(1.0 / D::BALL_INERTIA))
 }

@@ -170,6 +170,24 @@ impl<M: Copy + Default + PartialEq> BlockList<M> {
         self.live_walls.clear();
     }
 
+    /// Changes what a listed pair remembers, where `change` gives something. Returns whether it did; `start` is the first
+    /// grain of the block.
+    pub(crate) fn set_memory(
+        &mut self,
+        start: usize,
+        (first, second): (usize, usize),
+        change: impl FnOnce(M) -> Option<M>,
+    ) -> bool {
+        let local = first - start;
+        let from = self.starts[local] as usize;
+        let partners = &self.partners[from..self.starts[local + 1] as usize];
+        let Ok(place) = partners.binary_search(&(second as u32)) else { return false };
+        let Some(changed) = change(self.memory[from + place]) else { return false };
+        self.memory[from + place] = changed;
+        self.touching[from + place] = true;
+        true
+    }
+
     /// Calls `visit` for every listed pair.
     pub(crate) fn visit_pairs(&self, range: Range<usize>, mut visit: impl FnMut(usize, usize, &M)) {
         for (local, first) in range.enumerate().take(self.starts.len().saturating_sub(1)) {

@@ -72,6 +72,10 @@ pub struct PairProperties {
     pub restitution: f64,
     /// Tangential over normal damping coefficient \[-\].
     pub damping_ratio: f64,
+    /// Damping of the normal dashpot \[N s/m\] of linear contacts, in place of the one that follows from the restitution.
+    pub normal_damping: Option<f64>,
+    /// Damping of the tangential dashpot \[N s/m\] of linear contacts, in place of the ratio to the normal one.
+    pub tangential_damping: Option<f64>,
     /// Coulomb friction \[-\].
     pub friction: f64,
     /// Rolling resistance \[-\].
@@ -103,6 +107,8 @@ impl PairProperties {
             ),
             restitution: a.restitution.min(b.restitution),
             damping_ratio: a.damping_ratio.min(b.damping_ratio),
+            normal_damping: None,
+            tangential_damping: None,
             friction: a.friction.min(b.friction),
             rolling_friction: a.rolling_friction.min(b.rolling_friction),
         }
@@ -113,9 +119,16 @@ impl PairProperties {
         damping_for_restitution(self.restitution, tension)
     }
 
+    /// Damping of the normal dashpot \[N s/m\] of a linear contact of this effective mass \[kg\].
+    pub fn damping(&self, effective_mass: f64, tension: Tension) -> f64 {
+        let of_restitution = || 2.0 * self.zeta(tension) * (self.normal_stiffness * effective_mass).sqrt();
+        self.normal_damping.unwrap_or_else(of_restitution)
+    }
+
     /// Contact time \[s\] of two bodies of this effective mass \[kg\].
     pub fn contact_time(&self, effective_mass: f64, tension: Tension) -> f64 {
-        let zeta = self.zeta(tension);
+        let critical = 2.0 * (self.normal_stiffness * effective_mass).sqrt();
+        let zeta = self.normal_damping.map_or_else(|| self.zeta(tension), |damping| damping / critical);
         contact_phase(zeta, tension) / (self.normal_stiffness / effective_mass).sqrt()
     }
 }
@@ -183,7 +196,7 @@ pub struct MaterialId(pub(crate) u8);
 
 impl MaterialId {
     /// The identifier of the material that was added after so many others.
-    pub fn of_index(index: u8) -> Self {
+    pub const fn of_index(index: u8) -> Self {
         Self(index)
     }
 

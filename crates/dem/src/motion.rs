@@ -50,8 +50,47 @@ pub(crate) fn close_step<D: Dim>(
     pairs: &dyn Pairs<D>,
     blocks: Blocks,
     gravity: D::Vec,
-    dt: f64,
-    go_on: bool,
+    (dt, go_on): (f64, bool),
+    speeds: &mut [u64],
+) {
+    if grains.has_particulars() {
+        close::<D, true>(grains, pairs, blocks, gravity, (dt, go_on), speeds);
+    } else {
+        close::<D, false>(grains, pairs, blocks, gravity, (dt, go_on), speeds);
+    }
+}
+
+/// What moves grains that are not free uniform balls.
+#[derive(Clone, Copy)]
+pub(crate) struct Particulars<'a> {
+    fixed: &'a [bool],
+    inertia: &'a [f64],
+}
+
+impl<'a> Particulars<'a> {
+    /// Of the grains in a range; nothing where there is nothing particular.
+    pub(crate) fn of<D: Dim>(fixed: &'a [bool], inertia: &'a [f64], range: std::ops::Range<usize>) -> Self {
+        Self { fixed: fixed.get(range.clone()).unwrap_or(&[]), inertia: inertia.get(range).unwrap_or(&[]) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn is_fixed(self, k: usize) -> bool {
+        self.fixed.get(k).copied().unwrap_or(false)
+    }
+
+    #[inline(always)]
+    pub(crate) fn inertia<D: Dim>(self, k: usize, mass: f64, radius: f64) -> f64 {
+        self.inertia.get(k).copied().unwrap_or(D::BALL_INERTIA * mass * radius * radius)
+    }
+}
+
+/// [`close_step`]; grains are free uniform balls unless some are `PARTICULAR`.
+fn close<D: Dim, const PARTICULAR: bool>(
+    grains: &mut Grains<D>,
+    pairs: &dyn Pairs<D>,
+    blocks: Blocks,
+    gravity: D::Vec,
+    (dt, go_on): (f64, bool),
     speeds: &mut [u64],
 ) {
     let work = (
@@ -60,17 +99,21 @@ pub(crate) fn close_step<D: Dim>(
         (&mut grains.spin[..], &mut grains.spin_acceleration[..], &mut grains.middle_spin[..]),
         PerBlock(speeds),
     );
-    let (masses, radii) = (&grains.mass, &grains.radius);
+    let (masses, radii, fixed, inertia) = (&grains.mass, &grains.radius, &grains.fixed, &grains.inertia);
     blocks.for_each(
         work,
         |block, (position, (velocity, load, middle), (spin, moment, middle_spin), speed)| {
             pairs.collect(block, load, moment);
             let range = blocks.range(block);
+            let particulars = Particulars::of::<D>(fixed, inertia, range.clone());
             let (mass, radius) = (&masses[range.clone()], &radii[range]);
             let half = 0.5 * dt;
             let mut fastest = 0;
             for (k, &mass) in mass.iter().enumerate() {
-                let acceleration = load[k] * (1.0 / mass) + gravity;
+                let mut acceleration = load[k] * (1.0 / mass) + gravity;
+                if PARTICULAR && particulars.is_fixed(k) {
+                    acceleration = D::Vec::ZERO;
+                }
                 let v = velocity[k] + acceleration * dt;
                 let x = position[k] + v * half;
                 load[k] = acceleration;
@@ -85,7 +128,15 @@ pub(crate) fn close_step<D: Dim>(
                 }
             }
             for k in 0..spin.len() {
-                let acceleration = moment[k] * (1.0 / (D::BALL_INERTIA * mass[k] * radius[k] * radius[k]));
+                let inertia = if PARTICULAR {
+                    particulars.inertia::<D>(k, mass[k], radius[k])
+                } else {
+                    D::BALL_INERTIA * mass[k] * radius[k] * radius[k]
+                };
+                let mut acceleration = moment[k] * (1.0 / inertia);
+                if PARTICULAR && particulars.is_fixed(k) {
+                    acceleration = D::Spin::ZERO;
+                }
                 let w = spin[k] + acceleration * dt;
                 moment[k] = acceleration;
                 spin[k] = w;

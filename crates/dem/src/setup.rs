@@ -1,7 +1,7 @@
 //! What a simulation is made of.
 
 use crate::grains::Grain;
-use crate::material::{Materials, SetupError, Tension};
+use crate::material::{Materials, PairProperties, SetupError, Tension};
 use crate::walls::Wall;
 use granular_core::Dim;
 
@@ -27,6 +27,18 @@ pub enum ContactModel {
     Hertz,
 }
 
+/// How the tangential spring of two spheres is carried along when they turn about their normal. Spheres that roll over each
+/// other carry it with the normal in either case; disks have nothing to turn about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpringTurning {
+    /// It turns about the normal with the mean spin of the two: a pair that turns as one keeps the force in its own frame.
+    #[default]
+    MeanSpin,
+    /// It does not turn about the normal, as in codes that only lay it into the new tangent plane \[Luding2008, eq. 17\]: the
+    /// force of a pair that turns as one then turns against it.
+    NormalOnly,
+}
+
 /// Choices of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
@@ -36,6 +48,8 @@ pub struct Options {
     pub tension: Tension,
     /// Where a contact force acts.
     pub lever_arm: LeverArm,
+    /// How tangential springs of spheres turn about the normal.
+    pub spring_turning: SpringTurning,
     /// Whether losses of energy are integrated. Costs a few per cent; off unless asked for.
     pub ledger: bool,
     /// Steps in the shortest contact time, for the recommended step.
@@ -51,6 +65,7 @@ impl Default for Options {
             contact: ContactModel::Linear,
             tension: Tension::Cut,
             lever_arm: LeverArm::Exact,
+            spring_turning: SpringTurning::MeanSpin,
             ledger: false,
             steps_per_contact: 25.0,
             skin: 0.25,
@@ -89,6 +104,14 @@ pub(crate) fn check_options(options: &Options, gravity_is_finite: bool) -> Resul
 
 /// Every material has what the contact model asks for.
 pub(crate) fn check_stiffness(materials: &Materials, contact: ContactModel) -> Result<(), SetupError> {
+    let given = |(.., pair): (usize, usize, PairProperties)| pair.normal_damping.or(pair.tangential_damping);
+    if let (ContactModel::Hertz, Some(damping)) = (contact, materials.pairs().find_map(given)) {
+        return Err(SetupError::new(
+            "damping given for a pair",
+            damping,
+            "left out: contacts are those of Hertz",
+        ));
+    }
     for material in materials.iter() {
         match contact {
             ContactModel::Linear if material.normal_stiffness <= 0.0 => {

@@ -47,12 +47,11 @@ impl<D: Dim> Dem<D> {
         };
         let mut contact = 0.0;
         self.visit_contacts(&mut |c| contact += c.energy);
-        let inertia = |i: usize| D::BALL_INERTIA * grains.mass[i] * grains.radius[i].powi(2);
         Energies {
             potential: -self.blocks.sum(|i| grains.mass[i] * grains.position[i].dot(self.gravity)),
             kinetic: std::array::from_fn(|axis| if axis < D::N { kinetic(axis) } else { 0.0 }),
             rotational: if self.turns() {
-                self.blocks.sum(|i| 0.5 * inertia(i) * grains.spin[i].length_squared())
+                self.blocks.sum(|i| 0.5 * grains.inertia_of(i) * grains.spin[i].length_squared())
             } else {
                 0.0
             },
@@ -89,7 +88,7 @@ impl<D: Dim> Dem<D> {
         (0..self.len()).fold(D::Spin::ZERO, |sum, i| {
             let orbital = D::cross(grains.position[i], grains.velocity[i]) * grains.mass[i];
             let spin = grains.spin.get(i).copied().unwrap_or(D::Spin::ZERO);
-            sum + orbital + spin * (D::BALL_INERTIA * grains.mass[i] * grains.radius[i].powi(2))
+            sum + orbital + spin * grains.inertia_of(i)
         })
     }
 

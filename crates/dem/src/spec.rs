@@ -5,7 +5,7 @@ mod pair;
 pub use pair::PairSpec;
 
 use crate::material::{Elasticity, Material, Tension};
-use crate::setup::{ContactModel, LeverArm, Options};
+use crate::setup::{ContactModel, LeverArm, Options, SpringTurning};
 use granular_core::units::{Density, Length, Pressure, Stiffness, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -92,6 +92,7 @@ impl DemSpec {
                 LeverArmSpec::Exact => LeverArm::Exact,
                 LeverArmSpec::Radius => LeverArm::Radius,
             },
+            spring_turning: SpringTurning::default(),
             ledger,
             steps_per_contact: self.steps_per_contact,
             skin: self.skin,

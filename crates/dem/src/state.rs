@@ -68,6 +68,8 @@ impl<D: Dim> Dem<D> {
         }
         self.steps = from.one("steps")?;
         self.last_dt = from.one("last step taken")?;
+        // That step was checked when it was first taken: a run goes on as it would have.
+        self.unchecked = self.last_dt == 0.0;
         self.gravity = from.array_of("gravity", 1)?[0];
         self.shaken = shaking::restore(from)?;
         let losses: Vec<f64> = from.array_of("losses", 5)?;

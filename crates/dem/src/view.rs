@@ -36,6 +36,8 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) margin: f64,
     /// Part of the overlap by which each lever arm is shorter than the radius.
     pub(crate) arm_share: f64,
+    /// Share of the sum of spins about the normal with which springs turn: one half, or nothing.
+    pub(crate) twist_share: f64,
 }
 
 /// Laws between materials.

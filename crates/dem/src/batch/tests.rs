@@ -54,6 +54,7 @@ impl<D: Dim> Row<D> {
             last_dt: 1.1e-6,
             predicts: true,
             margin: 0.0,
+            twist_share: 0.5,
             arm_share: 0.5,
         }
     }

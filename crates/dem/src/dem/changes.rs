@@ -55,6 +55,7 @@ impl<D: Dim> Dem<D> {
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let before = self.options.ledger.then(|| self.energies().mechanical());
         change(self);
+        self.unchecked = true;
         self.list(0.0, None);
         if let Some(before) = before {
             self.injected += self.energies().mechanical() - before;

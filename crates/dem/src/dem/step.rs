@@ -119,7 +119,7 @@ impl<D: Dim> Dem<D> {
             self.close_in_cell(dt, field);
         } else {
             let pairs = self.pairs.as_ref();
-            motion::close_step(&mut self.grains, pairs, self.blocks, field, dt, go_on, &mut self.speeds);
+            motion::close_step(&mut self.grains, pairs, self.blocks, field, (dt, go_on), &mut self.speeds);
         }
         if let (Some(shaking), Some(before)) = (shaking, before) {
             self.injected += 0.5 * dt * shaking.dot(before + self.momentum());

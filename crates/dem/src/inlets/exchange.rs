@@ -33,6 +33,7 @@ impl<D: Dim> Dem<D> {
         if self.is_empty() {
             self.use_skin_of(2.0 * radii.iter().sum::<f64>() / radii.len() as f64);
         }
+        self.unchecked = true;
         self.grains.expect_material(*material);
         let since = if *runs { self.time() } else { f64::NAN };
         self.inlets.sources.push(Source { inlet, before: 0.0, since, tried: 0 });

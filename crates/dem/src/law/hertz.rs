@@ -232,6 +232,16 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         memory
     }
 
+    fn spring(&self, m: &Kinematics<D>, memory: &(D::Spin, f64)) -> D::Spin {
+        Slider::now(memory.0, m)
+    }
+
+    /// The stiffness is that of the present overlap.
+    fn with_spring(&self, m: &Kinematics<D>, _: (D::Spin, f64), spring: D::Spin) -> Option<(D::Spin, f64)> {
+        let stiffness = self.slider_on(&self.normal.area(m)).stiffness;
+        Some((Slider::half_a_step_ago(spring, m), stiffness))
+    }
+
     fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (Load<D>, f64) {
         let (mut load, energy): (Load<D>, f64) = self.normal.rest(m);
         let cap = self.friction * load.normal.max(0.0);

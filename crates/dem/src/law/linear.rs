@@ -13,13 +13,22 @@ use granular_core::{Dim, Linear};
 pub struct LinearNormal {
     /// Normal stiffness \[N/m\].
     pub stiffness: f64,
-    /// `2 zeta sqrt(k)`: times the root of the effective mass it is the damping.
+    /// `2 zeta sqrt(k)`: times the root of the effective mass it is the damping that follows from the restitution; zero where
+    /// the damping is given.
     pub damping_factor: f64,
+    /// Damping that is given, whatever the masses \[N s/m\]; else zero.
+    pub damping: f64,
     /// Whether parting contacts may pull.
     pub tension: Tension,
 }
 
 impl LinearNormal {
+    /// Damping of a contact of this effective mass.
+    #[inline(always)]
+    fn damping(&self, effective_mass: f64) -> f64 {
+        self.damping_factor * effective_mass.sqrt() + self.damping
+    }
+
     #[inline(always)]
     fn force(&self, overlap: f64, presence: f64, approach: f64, damping: f64) -> f64 {
         let force = self.stiffness * overlap + presence * damping * approach;
@@ -34,12 +43,19 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
 
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         let stiffness = properties.normal_stiffness;
-        Self { stiffness, damping_factor: 2.0 * properties.zeta(tension) * stiffness.sqrt(), tension }
+        let given = properties.normal_damping;
+        let factor = || 2.0 * properties.zeta(tension) * stiffness.sqrt();
+        Self {
+            stiffness,
+            damping_factor: if given.is_some() { 0.0 } else { factor() },
+            damping: given.unwrap_or(0.0),
+            tension,
+        }
     }
 
     #[inline(always)]
     fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
-        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let damping = self.damping(m.effective_mass);
         let force = self.force(m.overlap, m.presence, m.approach, damping);
         tally
             .normal_damping(|| m.damped(force, self.stiffness * m.overlap, damping) + m.kept(self.stiffness));
@@ -49,7 +65,7 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
     fn reversed((): ()) {}
 
     fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
-        let damping = self.damping_factor * m.effective_mass.sqrt();
+        let damping = self.damping(m.effective_mass);
         let force = self.force(m.overlap, 1.0, m.approach, damping);
         (Load::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
     }
@@ -62,8 +78,10 @@ pub struct LinearFrictional {
     pub normal: LinearNormal,
     /// Tangential stiffness \[N/m\].
     pub tangential_stiffness: f64,
-    /// Tangential over normal damping coefficient \[-\].
+    /// Tangential over normal damping coefficient \[-\]; zero where the tangential damping is given.
     pub damping_ratio: f64,
+    /// Tangential damping that is given \[N s/m\]; else zero.
+    pub damping: f64,
     /// Coulomb friction \[-\].
     pub friction: f64,
 }
@@ -71,7 +89,8 @@ pub struct LinearFrictional {
 impl LinearFrictional {
     #[inline(always)]
     fn slider(&self, effective_mass: f64) -> Slider {
-        let damping = self.damping_ratio * self.normal.damping_factor * effective_mass.sqrt();
+        let of_ratio = self.damping_ratio * self.normal.damping_factor * effective_mass.sqrt();
+        let damping = of_ratio + (self.damping_ratio * self.normal.damping + self.damping);
         Slider { stiffness: self.tangential_stiffness, damping }
     }
 }
@@ -107,13 +126,18 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         Self {
             normal: <LinearNormal as ContactLaw<D>>::between(properties, tension),
             tangential_stiffness: properties.tangential_stiffness,
-            damping_ratio: properties.damping_ratio,
+            damping_ratio: if properties.tangential_damping.is_some() {
+                0.0
+            } else {
+                properties.damping_ratio
+            },
+            damping: properties.tangential_damping.unwrap_or(0.0),
             friction: properties.friction,
         }
     }
 
     fn predicts(&self) -> bool {
-        self.damping_ratio > 0.0
+        self.damping_ratio > 0.0 || self.damping > 0.0
     }
 
     #[inline(always)]
@@ -137,7 +161,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     fn release<const LEDGER: bool>(&self, memory: &D::Spin, tally: &mut Tally<LEDGER>) {
         let held = || Frictional::<D>::held(self, memory, *memory);
         // A dashpot lets the spring go; without one it slides back.
-        if self.damping_ratio > 0.0 {
+        if self.damping_ratio > 0.0 || self.damping > 0.0 {
             tally.tangential_damping(held);
         } else if self.friction > 0.0 {
             tally.sliding(held);
@@ -147,6 +171,14 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
     fn reversed(memory: D::Spin) -> D::Spin {
         // n and xi both change sign, so n x xi does not.
         memory
+    }
+
+    fn spring(&self, m: &Kinematics<D>, memory: &D::Spin) -> D::Spin {
+        Slider::now(*memory, m)
+    }
+
+    fn with_spring(&self, m: &Kinematics<D>, _: D::Spin, spring: D::Spin) -> Option<D::Spin> {
+        Some(Slider::half_a_step_ago(spring, m))
     }
 
     fn at_rest(&self, m: &Kinematics<D>, memory: D::Spin) -> (Load<D>, f64) {

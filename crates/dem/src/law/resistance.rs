@@ -61,6 +61,19 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         (F::reversed(grip), -rolling)
     }
 
+    fn spring(&self, m: &Kinematics<D>, memory: &(F::Memory, D::Spin)) -> D::Spin {
+        self.frictional.spring(m, &memory.0)
+    }
+
+    fn with_spring(
+        &self,
+        m: &Kinematics<D>,
+        (grip, rolling): (F::Memory, D::Spin),
+        spring: D::Spin,
+    ) -> Option<(F::Memory, D::Spin)> {
+        Some((self.frictional.with_spring(m, grip, spring)?, rolling))
+    }
+
     fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (Load<D>, f64) {
         let (mut load, energy) = self.frictional.at_rest(m, grip);
         let cap = self.rolling_friction * load.normal.max(0.0);
@@ -136,6 +149,19 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
     fn reversed((rolling, twisting): Twisted<D, F>) -> Twisted<D, F> {
         // Both the normal and the difference of spins change sign.
         (<Rolling<F> as ContactLaw<D>>::reversed(rolling), twisting)
+    }
+
+    fn spring(&self, m: &Kinematics<D>, memory: &Twisted<D, F>) -> D::Spin {
+        ContactLaw::<D>::spring(&self.rolling, m, &memory.0)
+    }
+
+    fn with_spring(
+        &self,
+        m: &Kinematics<D>,
+        (rolling, twisting): Twisted<D, F>,
+        spring: D::Spin,
+    ) -> Option<Twisted<D, F>> {
+        Some((self.rolling.with_spring(m, rolling, spring)?, twisting))
     }
 
     fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (Load<D>, f64) {

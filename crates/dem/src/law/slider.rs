@@ -154,6 +154,16 @@ impl Slider {
         }
     }
 
+    /// A spring of the middle of the last step as it is between steps.
+    pub(crate) fn now<D: Dim>(spring: D::Spin, m: &Kinematics<D>) -> D::Spin {
+        spring + m.slip * (0.5 * m.last_dt)
+    }
+
+    /// A spring between steps as it was in the middle of the last step.
+    pub(crate) fn half_a_step_ago<D: Dim>(spring: D::Spin, m: &Kinematics<D>) -> D::Spin {
+        spring - m.slip * (0.5 * m.last_dt)
+    }
+
     /// Force and stored energy between steps: the spring is half a step behind, and what the next
     /// step will slide is still stored.
     ///

@@ -54,12 +54,15 @@ struct Couple {
 impl Oscillator {
     pub(super) fn linear(pair: &PairProperties, effective_mass: f64, zeta: f64) -> Self {
         let normal = pair.normal_stiffness / effective_mass;
-        let normal_damping = 2.0 * zeta * normal.sqrt();
+        let of_restitution = || 2.0 * zeta * normal.sqrt();
+        let normal_damping = pair.normal_damping.map_or_else(of_restitution, |given| given / effective_mass);
         Self {
             normal,
             tangential: pair.tangential_stiffness / effective_mass,
             normal_damping,
-            tangential_damping: pair.damping_ratio * normal_damping,
+            tangential_damping: pair
+                .tangential_damping
+                .map_or(pair.damping_ratio * normal_damping, |given| given / effective_mass),
         }
     }
 
@@ -78,8 +81,9 @@ impl Oscillator {
     }
 
     /// Largest stable step \[s\]: see [`stability_step`](crate::stability_step).
-    pub(super) fn largest_step<D: Dim>(&self, neighbours: usize, turns: bool) -> f64 {
-        let gain = 1.0 + 1.0 / D::BALL_INERTIA;
+    /// `turns` holds the largest ratio of `mass radius^2` to the moment of inertia, if grains turn.
+    pub(super) fn largest_step(&self, neighbours: usize, turns: Option<f64>) -> f64 {
+        let gain = 1.0 + turns.unwrap_or(0.0);
         let share = neighbours as f64;
         let limit = |stiffness: f64, damping: f64| {
             let (w2, c) = (stiffness * share, damping * share);
@@ -87,7 +91,7 @@ impl Oscillator {
             2.0 * ((c * c + w2).sqrt() - c) / w2
         };
         let along = limit(self.normal, self.normal_damping);
-        if !turns || self.tangential <= 0.0 {
+        if turns.is_none() || self.tangential <= 0.0 {
             return along;
         }
         along.min(limit(gain * self.tangential, gain * self.tangential_damping))

@@ -25,6 +25,11 @@ pub struct PairOverride {
     pub restitution: Option<f64>,
     /// Tangential over normal damping coefficient \[-\].
     pub damping_ratio: Option<f64>,
+    /// Damping of the normal dashpot \[N s/m\] of linear contacts, whatever the masses, in place of the one that follows from
+    /// the restitution.
+    pub normal_damping: Option<f64>,
+    /// Damping of the tangential dashpot \[N s/m\] of linear contacts, in place of the ratio to the normal one.
+    pub tangential_damping: Option<f64>,
     /// Coulomb friction \[-\].
     pub friction: Option<f64>,
     /// Rolling resistance \[-\].
@@ -52,6 +57,8 @@ impl PairOverride {
             tangential_stiffness,
             restitution: self.restitution.unwrap_or(mixed.restitution),
             damping_ratio: self.damping_ratio.unwrap_or(mixed.damping_ratio),
+            normal_damping: self.normal_damping,
+            tangential_damping: self.tangential_damping,
             friction: self.friction.unwrap_or(mixed.friction),
             rolling_friction: self.rolling_friction.unwrap_or(mixed.rolling_friction),
             twisting_friction: self.twisting_friction.unwrap_or(mixed.twisting_friction),
@@ -61,6 +68,13 @@ impl PairOverride {
 
     /// Whether all values are in the ranges of a material.
     pub(super) fn check(&self) -> Result<(), SetupError> {
+        let given =
+            [("normal damping", self.normal_damping), ("tangential damping", self.tangential_damping)];
+        for (what, value) in given {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+                return Err(SetupError::new(what, value, "zero or more, and finite"));
+            }
+        }
         let usual = Material { normal_stiffness: 1.0, elasticity: None, ..Material::default() };
         super::check(&Material {
             normal_stiffness: self.normal_stiffness.unwrap_or(usual.normal_stiffness),

@@ -16,7 +16,7 @@
 use super::{Matrix, PeriodicCell, Sums};
 use crate::contacts::Pairs;
 use crate::grains::Grains;
-use crate::motion::order_of;
+use crate::motion::{Particulars, order_of};
 use granular_core::{Blocks, Dim, Linear, PerBlock};
 
 /// First half of a step: drift, and predict the velocity at the middle, now that of the laboratory.
@@ -97,14 +97,17 @@ pub(crate) fn close_step<D: Dim>(
         (&mut grains.spin[..], &mut grains.spin_acceleration[..]),
         PerBlock(&mut cell.sums),
     );
-    let (masses, radii) = (&grains.mass, &grains.radius);
+    let (masses, radii, fixed, inertia) = (&grains.mass, &grains.radius, &grains.fixed, &grains.inertia);
     blocks.for_each(work, |block, (position, (velocity, load), (spin, moment), sums)| {
         pairs.collect(block, load, moment);
         let range = blocks.range(block);
+        let particulars = Particulars::of::<D>(fixed, inertia, range.clone());
         let (mass, radius) = (&masses[range.clone()], &radii[range]);
         let mut sum = Sums::<D>::default();
         for (k, &mass) in mass.iter().enumerate() {
-            let acceleration = load[k] * (1.0 / mass) + gravity;
+            let free = load[k] * (1.0 / mass) + gravity;
+            // A grain that is fixed goes with the flow of the cell.
+            let acceleration = if particulars.is_fixed(k) { D::Vec::ZERO } else { free };
             let u = back.apply(forth.apply(velocity[k]) + acceleration * dt);
             let (place, mean) = (position[k] - low, (velocity[k] + u) * 0.5);
             sum.virial = sum.virial.plus(&Matrix::dyad(load[k], place), 1.0);
@@ -115,7 +118,8 @@ pub(crate) fn close_step<D: Dim>(
             load[k] = acceleration;
         }
         for k in 0..spin.len() {
-            let acceleration = moment[k] * (1.0 / (D::BALL_INERTIA * mass[k] * radius[k] * radius[k]));
+            let free = moment[k] * (1.0 / particulars.inertia::<D>(k, mass[k], radius[k]));
+            let acceleration = if particulars.is_fixed(k) { D::Spin::ZERO } else { free };
             moment[k] = acceleration;
             spin[k] += acceleration * dt;
         }

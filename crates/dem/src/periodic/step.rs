@@ -41,6 +41,7 @@ impl<D: Dim> Dem<D> {
                 return Err(SetupError::new("place of a grain in edges of the cell", far, "at most 100"));
             }
         }
+        self.unchecked = true;
         self.cell = Some(Box::new(cell));
         self.put_inside([[0; 3]; 3]);
         self.injected = 0.0;
@@ -156,6 +157,11 @@ impl<D: Dim> Dem<D> {
         if flipped.is_some() || cell.drift > DRIFT * cell.narrowest() {
             self.put_inside(flipped.unwrap_or([[0; 3]; 3]));
         }
+    }
+
+    /// Puts grains inside that were put outside of the cell; nothing without one.
+    pub(crate) fn put_back_inside(&mut self) {
+        self.put_inside([[0; 3]; 3]);
     }
 
     /// Puts every grain inside the cell, by whole edges. `mixed[k][l]` of edge `l` were taken off edge

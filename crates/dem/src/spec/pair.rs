@@ -48,6 +48,7 @@ impl PairSpec {
             friction: self.friction,
             rolling_friction: self.rolling_friction,
             twisting_friction: self.twisting_friction,
+            ..PairOverride::default()
         }
     }
 

@@ -122,6 +122,8 @@ fn properties(friction: f64, damping_ratio: f64) -> PairProperties {
         tangential_stiffness: 4e5,
         restitution: 0.8,
         damping_ratio,
+        normal_damping: None,
+        tangential_damping: None,
         friction,
         rolling_friction: 0.2,
         twisting_friction: 0.2,

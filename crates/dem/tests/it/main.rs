@@ -25,6 +25,7 @@ mod push;
 mod restart;
 mod sample;
 mod shaking;
+mod single;
 mod stability;
 mod surfaces;
 
