@@ -260,7 +260,9 @@ fn load<D: Dim, L: ContactLaw<D>, const LEDGER: bool>(
         let mut memory = memories[k];
         let load = law.load(&kinematics, &mut memory, &mut tally);
         memories[k] = memory;
-        presence[k] = kinematics.presence;
+        let apart = L::REACHES && kinematics.presence == 0.0;
+        let reached = apart && law.acts(kinematics.gap, &memory);
+        presence[k] = if reached { 1.0 } else { kinematics.presence };
         force[k] = push_of::<D, L>(&load, kinematics.normal);
         if L::TANGENTIAL {
             torques[0][k] = load.rolling - load.tangential * arms.0;

@@ -2,7 +2,7 @@
 
 use crate::contacts::{Contacts, Pairs};
 use crate::law::{
-    ContactLaw, Frictional, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, Rolling, Twisting,
+    Frictional, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, MaterialLaw, Rolling, Twisting,
 };
 use crate::material::Materials;
 use crate::setup::{ContactModel, Options};
@@ -58,7 +58,7 @@ fn of_model<D: Dim>(
     }
 }
 
-fn of_family<D: Dim, N: ContactLaw<D>, F: Frictional<D>>(
+fn of_family<D: Dim, N: MaterialLaw<D>, F: Frictional<D>>(
     materials: &Materials,
     options: &Options,
     blocks: Blocks,
@@ -67,12 +67,12 @@ fn of_family<D: Dim, N: ContactLaw<D>, F: Frictional<D>>(
     let tension = options.tension;
     // Disks cannot twist: nothing is remembered or computed for it.
     if D::TWISTS && materials.pairs().any(|(.., pair)| pair.twisting_friction > 0.0) {
-        Box::new(Contacts::<D, Twisting<F>>::new(materials, tension, blocks))
+        Box::new(Contacts::<D, Twisting<F>>::of_materials(materials, tension, blocks))
     } else if materials.pairs().any(|(.., pair)| pair.rolling_friction > 0.0) {
-        Box::new(Contacts::<D, Rolling<F>>::new(materials, tension, blocks))
+        Box::new(Contacts::<D, Rolling<F>>::of_materials(materials, tension, blocks))
     } else if turning {
-        Box::new(Contacts::<D, F>::new(materials, tension, blocks))
+        Box::new(Contacts::<D, F>::of_materials(materials, tension, blocks))
     } else {
-        Box::new(Contacts::<D, N>::new(materials, tension, blocks))
+        Box::new(Contacts::<D, N>::of_materials(materials, tension, blocks))
     }
 }

@@ -19,7 +19,7 @@ pub struct Contact<D: Dim> {
     pub shift: [i8; 3],
     /// Unit vector from the second body to the first.
     pub normal: D::Vec,
-    /// Overlap \[m\].
+    /// Overlap \[m\]; negative where a law with a reach acts on surfaces that are apart.
     pub overlap: f64,
     /// Force along the normal \[N\].
     pub normal_force: f64,
@@ -50,6 +50,20 @@ pub enum Partner {
     Wall(usize),
 }
 
+/// Overlap between steps \[m\].
+pub(crate) fn overlap_of<D: Dim, L: ContactLaw<D>>(kinematics: &Kinematics<D>) -> f64 {
+    if L::REACHES { -kinematics.gap } else { kinematics.overlap }
+}
+
+/// Whether there is a contact between steps.
+pub(crate) fn ongoing<D: Dim, L: ContactLaw<D>>(
+    law: &L,
+    kinematics: &Kinematics<D>,
+    memory: &L::Memory,
+) -> bool {
+    kinematics.overlap > 0.0 || (L::REACHES && law.acts(kinematics.gap, memory))
+}
+
 /// A contact as outputs see it.
 pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
     law: &L,
@@ -65,7 +79,7 @@ pub(crate) fn contact_of<D: Dim, L: ContactLaw<D>>(
         branch,
         shift: [0; 3],
         normal: kinematics.normal,
-        overlap: kinematics.overlap,
+        overlap: overlap_of::<D, L>(kinematics),
         normal_force: load.normal,
         force: push_of::<D, L>(&load, kinematics.normal),
         torque: load.rolling,

@@ -5,13 +5,13 @@
 //! block goes to `outgoing`, from where that block collects it in the order of its `inbox`.
 //! Every grain thus sums its loads in an order that depends on the state alone.
 
-use crate::contact::{Contact, Partner, contact_of};
+use crate::contact::{Contact, Partner, contact_of, ongoing, overlap_of};
 use crate::grains::Grains;
 use crate::kinematics::overlapping;
-use crate::law::ContactLaw;
+use crate::law::{ContactLaw, LawLimits, MaterialLaw};
 use crate::ledger::{Losses, Tally};
 use crate::lists::{BlockList, NearWall, Places, Receipt, places, spare};
-use crate::material::{Materials, Tension};
+use crate::material::{Materials, PairProperties, Tension};
 use crate::pass::{Kernel, Owed, Trouble};
 use crate::periodic::PeriodicCell;
 use crate::periodic::images::{self, Bounds, ImageList, ImagePair, Moved, meet_image};
@@ -61,6 +61,10 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn tangential(&self) -> bool;
     /// Whether any law asks for the predicted motion across contacts.
     fn predicts(&self) -> bool;
+    /// Distance of surfaces \[m\] up to which some law acts.
+    fn reach(&self) -> f64;
+    /// What a law says of its limits between two materials at an effective mass \[kg\].
+    fn limits(&self, a: usize, b: usize, effective_mass: f64) -> Option<LawLimits>;
     /// Bytes in lists, and bytes that one contact remembers.
     fn bytes(&self) -> (usize, usize);
 }
@@ -68,6 +72,8 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
     laws: Vec<L>,
+    /// The law between two materials.
+    between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
@@ -85,11 +91,23 @@ pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     results: Vec<(Losses, Option<Trouble>)>,
 }
 
+impl<D: Dim, L: MaterialLaw<D>> Contacts<D, L> {
+    pub(crate) fn of_materials(materials: &Materials, tension: Tension, blocks: Blocks) -> Self {
+        Self::new(materials, tension, blocks, Box::new(L::between))
+    }
+}
+
 impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
-    pub(crate) fn new(materials: &Materials, tension: Tension, blocks: Blocks) -> Self {
+    pub(crate) fn new(
+        materials: &Materials,
+        tension: Tension,
+        blocks: Blocks,
+        between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
+    ) -> Self {
         let count = blocks.count();
         let mut contacts = Self {
             laws: Vec::new(),
+            between,
             materials: materials.len(),
             blocks,
             lists: (0..count).map(|_| BlockList::default()).collect(),
@@ -145,12 +163,15 @@ impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
         let Some(cell) = view.cell else { return };
         for list in &self.images {
             for (pair, &memory) in list.pairs.iter().zip(&list.memory) {
-                let met = meet_image::<D, L>(view, cell, pair, 0.0);
+                let met = meet_image::<D, L>(view, cell, pair, view.law_reach);
                 let Some((kinematics, _, _)) = met else { continue };
                 let (first, second) = (pair.first as usize, pair.second as usize);
                 let law = laws.between(view.material_of(first), view.material_of(second));
                 let branch = view.position[first] - view.position[second] - cell.offset(pair.shift);
                 let bodies = (first, Partner::Grain(second));
+                if !ongoing::<D, L>(law, &kinematics, &memory) {
+                    continue;
+                }
                 let contact = contact_of::<D, L>(law, &kinematics, memory, bodies, branch);
                 visit(Contact { shift: pair.shift, ..contact });
             }
@@ -370,6 +391,9 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
             list.visit_pairs(self.blocks.range(block), |first, second, &memory| {
                 if let Some(kinematics) = overlapping::<D, L>(view, first, second) {
                     let law = laws.between(view.material_of(first), view.material_of(second));
+                    if !ongoing::<D, L>(law, &kinematics, &memory) {
+                        return;
+                    }
                     let branch = view.position[first] - view.position[second];
                     visit(contact_of::<D, L>(
                         law,
@@ -387,9 +411,9 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
                 } else {
                     meet_wall::<D, L, true>(view, first, wall)
                 };
-                if let Some((kinematics, _)) = met.filter(|(kinematics, _)| kinematics.overlap > 0.0) {
-                    let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-                    let branch = kinematics.normal * (view.radius[first] - kinematics.overlap);
+                let law = laws.between(view.material_of(first), view.walls[wall].material.0);
+                if let Some((kinematics, _)) = met.filter(|(met, _)| ongoing::<D, L>(law, met, &memory)) {
+                    let branch = kinematics.normal * (view.radius[first] - overlap_of::<D, L>(&kinematics));
                     visit(contact_of::<D, L>(law, &kinematics, memory, (first, Partner::Wall(wall)), branch));
                 }
             }
@@ -437,7 +461,7 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn update(&mut self, materials: &Materials, tension: Tension) {
         let n = materials.len();
-        self.laws = (0..n * n).map(|k| L::between(&materials.pair(k / n, k % n), tension)).collect();
+        self.laws = (0..n * n).map(|k| (self.between)(&materials.pair(k / n, k % n), tension)).collect();
     }
 
     fn save(&self, grains: &Grains<D>, walls: &[Wall<D>], to: &mut Section) {
@@ -473,6 +497,14 @@ impl<D: Dim, L: ContactLaw<D>> Pairs<D> for Contacts<D, L> {
 
     fn predicts(&self) -> bool {
         self.laws.iter().any(L::predicts)
+    }
+
+    fn reach(&self) -> f64 {
+        if L::REACHES { self.laws.iter().map(L::reach).fold(0.0, f64::max) } else { 0.0 }
+    }
+
+    fn limits(&self, a: usize, b: usize, effective_mass: f64) -> Option<LawLimits> {
+        self.laws[a * self.materials + b].limits(effective_mass)
     }
 
     fn bytes(&self) -> (usize, usize) {

@@ -12,7 +12,7 @@ use crate::grains::{Grain, Grains};
 use crate::inlets::InletsAndOutlets;
 use crate::law::ContactLaw;
 use crate::ledger::Losses;
-use crate::material::{MaterialId, Materials, SetupError};
+use crate::material::{MaterialId, Materials, PairProperties, SetupError};
 use crate::periodic::PeriodicCell;
 use crate::setup::{LeverArm, Options, Setup, SpringTurning, check_options, check_stiffness};
 use crate::shaking::Shaken;
@@ -86,13 +86,15 @@ impl<D: Dim> Dem<D> {
         Self::build(setup, law, false)
     }
 
-    /// A simulation with a contact law of the caller's own.
+    /// A simulation with a contact law of the caller's own, a value with its own parameters. What the law takes from
+    /// materials, if anything, is up to [`ContactLaw::for_pair`].
     ///
     /// # Errors
     /// When a value is out of range.
-    pub fn with_law<L: ContactLaw<D>>(setup: Setup<D>) -> Result<Self, SetupError> {
+    pub fn with_law<L: ContactLaw<D>>(setup: Setup<D>, law: L) -> Result<Self, SetupError> {
         let law = |materials: &Materials, options: &Options, blocks| -> Box<dyn Pairs<D>> {
-            Box::new(Contacts::<D, L>::new(materials, options.tension, blocks))
+            let between = move |pair: &PairProperties, tension| law.for_pair(pair, tension);
+            Box::new(Contacts::<D, L>::new(materials, options.tension, blocks, Box::new(between)))
         };
         Self::build(setup, law, true)
     }
@@ -166,22 +168,20 @@ impl<D: Dim> Dem<D> {
         self.grains.turns
     }
 
-    /// Lets [`advance`](Solver::advance) take steps beyond the [stability limit](Dem::stable_step), which it refuses
-    /// otherwise: for studies of what happens there. The limit is that of the stiffest meeting that the scene allows, with
-    /// as many contacts per grain as can be; single contacts bear more.
+    /// Lets [`advance`](Solver::advance) take steps beyond the [limit of a contact](Dem::contact_step), which it refuses
+    /// otherwise: for studies of what happens there.
     pub fn allow_any_step(&mut self) {
         self.any_step = true;
     }
 
-    /// Refuses a step beyond the stability limit. The limit is looked for when a step becomes longer, and after changes.
+    /// Refuses a step at which a contact gains energy. The limit is looked for when a step becomes longer, and after changes.
     fn check_stability(&mut self, dt: f64) -> Result<(), StepError> {
         if self.any_step || (dt <= self.last_dt && !self.unchecked) {
             return Ok(());
         }
-        let mut limits = Limits::default();
-        self.report_limits(&mut limits);
-        if let Some(limit) = limits.largest_allowed().filter(|limit| dt > limit.dt * (1.0 + 1e-9)) {
-            let why = format!("it must be at most {:.4e} s: {} ({})", limit.dt, limit.name, limit.why);
+        let (limit, names) = self.limit_of_a_contact();
+        if dt > limit * (1.0 + 1e-9) {
+            let why = format!("it must be at most {limit:.4e} s for the stability of a contact ({names})");
             return Err(StepError::Step { dt, why });
         }
         self.unchecked = false;
@@ -272,7 +272,13 @@ impl<D: Dim> Dem<D> {
     /// What kernels see of the state between steps.
     pub(crate) fn view(&self) -> View<'_, D> {
         let cell = self.cell.as_deref();
-        View { cell, ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt) }
+        let law_reach = self.pairs.reach();
+        View {
+            cell,
+            law_reach,
+            margin: law_reach,
+            ..view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt)
+        }
     }
 
     /// Rebuilds the lists for grains that move at most `stride` \[m\] in a step, zero when that is not known.
@@ -282,8 +288,9 @@ impl<D: Dim> Dem<D> {
         self.largest = self.grains.radius_range().1;
         let largest = self.largest;
         self.moving_walls.note_distances(&self.grains.position, 2.0 * self.reach + largest);
+        let law_reach = self.pairs.reach();
         let view = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
-        self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach, order);
+        self.pairs.list(&View { cell: self.cell.as_deref(), ..view }, self.reach + law_reach, order);
     }
 
     /// How far lists reach beyond contact \[m\] for grains that move at most `stride` \[m\] in a step.
@@ -354,6 +361,7 @@ pub(crate) fn view_of<'a, D: Dim>(
         last_dt,
         predicts: true,
         margin: 0.0,
+        law_reach: 0.0,
         twist_share: if options.spring_turning == SpringTurning::MeanSpin { 0.5 } else { 0.0 },
         arm_share: if options.lever_arm == LeverArm::Exact { 0.5 } else { 0.0 },
     }

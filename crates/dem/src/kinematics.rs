@@ -42,9 +42,11 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     let relative = own.velocity - other.velocity;
     let approach = -relative.dot(normal);
     let start_relative = own.start_velocity - other.start_velocity;
+    let gap = -overlap;
     let (presence, overlap) = share_of_step(overlap, approach, view.dt);
     let mut kinematics = Kinematics {
         normal,
+        gap,
         overlap,
         presence,
         approach,
@@ -116,7 +118,7 @@ impl<D: Dim> Pair<D> {
     }
 }
 
-/// The kinematics of two grains that overlap now.
+/// The kinematics of two grains that overlap now, or are within the reach of a law.
 pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
     first: usize,
@@ -125,5 +127,6 @@ pub(crate) fn overlapping<D: Dim, L: ContactLaw<D>>(
     let arm = view.position[first] - view.position[second];
     let (own, other) = (view.body::<L>(first), view.body::<L>(second));
     let pair = Pair { own, other, arm, distance_squared: arm.length_squared() };
-    (pair.overlap() > 0.0 && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
+    let least = if L::REACHES { -view.law_reach } else { 0.0 };
+    (pair.overlap() > least && pair.distance_squared > 0.0).then(|| pair.meet::<L>(view).0)
 }

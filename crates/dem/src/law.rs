@@ -24,6 +24,8 @@ use std::fmt::Debug;
 pub struct Kinematics<D: Dim> {
     /// Unit vector from the second to the first body.
     pub normal: D::Vec,
+    /// Distance of the surfaces in the middle of the step \[m\]; negative where they overlap.
+    pub gap: f64,
     /// Overlap \[m\], averaged over the part of the step before and after the surfaces meet.
     pub overlap: f64,
     /// Share of the step during which the surfaces overlap, 0 to 1.
@@ -120,8 +122,25 @@ impl<D: Dim> Load<D> {
     }
 }
 
-/// A contact law. Statically typed in the kernels: pass any implementation to
+/// What bounds the step of a contact: its stiffest state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LawLimits {
+    /// Normal stiffness \[N/m\].
+    pub normal_stiffness: f64,
+    /// Normal damping \[N s/m\].
+    pub normal_damping: f64,
+    /// Tangential stiffness \[N/m\]; zero without a tangential spring.
+    pub tangential_stiffness: f64,
+    /// Tangential damping \[N s/m\].
+    pub tangential_damping: f64,
+}
+
+/// A contact law, a value with its own parameters. Statically typed in the kernels: pass any implementation to
 /// [`Dem::with_law`](crate::Dem::with_law).
+///
+/// A law that acts before surfaces overlap (cohesion, capillary bridges) says so by [`REACHES`](Self::REACHES) and
+/// [`reach`](Self::reach); then `load` is also called for surfaces that are apart by less, with their distance as
+/// [`Kinematics::gap`], and a contact lasts as long as the law [`acts`](Self::acts).
 pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// What one contact remembers between steps; `()` when nothing. The default is a fresh contact.
     type Memory: Copy + Default + PartialEq + Stored + Debug + Send + Sync + 'static;
@@ -132,8 +151,31 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     /// Name, for reports.
     const NAME: &'static str;
 
-    /// The law between two materials.
-    fn between(properties: &PairProperties, tension: Tension) -> Self;
+    /// Whether the law may act on surfaces that do not overlap. What serves such laws is not in the kernels of others.
+    const REACHES: bool = false;
+
+    /// The law as it is between two materials; the same for all unless it takes something from them.
+    fn for_pair(&self, properties: &PairProperties, tension: Tension) -> Self {
+        let _ = (properties, tension);
+        *self
+    }
+    /// Distance of surfaces \[m\] up to which the law may act.
+    fn reach(&self) -> f64 {
+        0.0
+    }
+    /// Whether the law acts on surfaces at this distance \[m\], negative where they overlap, with what the contact
+    /// remembers; only asked of laws with a reach. What it answers for overlapping surfaces does not matter.
+    #[inline(always)]
+    fn acts(&self, gap: f64, memory: &Self::Memory) -> bool {
+        let _ = memory;
+        gap < self.reach()
+    }
+    /// The stiffest state of a contact of this effective mass \[kg\], from which the limits on the step follow; none where
+    /// those of the materials hold.
+    fn limits(&self, effective_mass: f64) -> Option<LawLimits> {
+        let _ = effective_mass;
+        None
+    }
     /// Whether the law reads `slip` and `roll` of a [`Kinematics`], the motion across the contact in the
     /// middle of the step as predicted. They are zero, and cost nothing, when no law of a
     /// simulation does.
@@ -175,9 +217,15 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (Load<D>, f64);
 }
 
+/// A law that follows from the properties of materials.
+pub trait MaterialLaw<D: Dim>: ContactLaw<D> {
+    /// The law between two materials.
+    fn between(properties: &PairProperties, tension: Tension) -> Self;
+}
+
 /// A law with a tangential spring, whose stiffness and damping may also resist rolling and
 /// twisting ([`Rolling`], [`Twisting`]).
-pub trait Frictional<D: Dim>: ContactLaw<D> {
+pub trait Frictional<D: Dim>: MaterialLaw<D> {
     /// Names of the law with rolling resistance, and with rolling and twisting resistance.
     const RESISTING: [&'static str; 2];
     /// Stiffness and damping of the tangential spring in these kinematics.

@@ -72,7 +72,8 @@ pub use granular_core::shape::{Facets, Shape};
 pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
 pub use inlets::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
 pub use law::{
-    ContactLaw, HertzMindlin, HertzNormal, LinearFrictional, LinearNormal, LinearRolling, Rolling, Twisting,
+    ContactLaw, HertzMindlin, HertzNormal, Kinematics, LawLimits, LinearFrictional, LinearNormal,
+    LinearRolling, Load, MaterialLaw, Rolling, Twisting,
 };
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;

@@ -33,6 +33,21 @@ impl<D: Dim> Dem<D> {
         limits.largest_allowed().map_or(f64::INFINITY, |limit| limit.dt)
     }
 
+    /// Largest step \[s\] at which a contact of its own is stable: beyond, every contact that lasts gains energy in each step,
+    /// and [`advance`](Solver::advance) refuses. A packing bears less, see [`Dem::stable_step`].
+    pub fn contact_step(&self) -> f64 {
+        self.limit_of_a_contact().0
+    }
+
+    /// [`Dem::contact_step`], and between which bodies that is; infinite where there are no two that could touch.
+    pub(crate) fn limit_of_a_contact(&self) -> (f64, String) {
+        let turns = self.pairs.tangential().then(|| self.grains.lightest_to_turn());
+        let alone = self.len() < 2 && !self.brings_grains() && self.cell.is_none();
+        let pairs = self.stiffest_pairs(false).into_iter().filter(|pair| pair.on_wall || !alone);
+        let limits = pairs.map(|pair| (pair.oscillator.largest_step(1, turns), pair.names));
+        limits.reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap_or((f64::INFINITY, String::new()))
+    }
+
     pub(crate) fn report_limits(&self, report: &mut Limits) {
         let stiffest = self.stiffest_pairs(true);
         if stiffest.is_empty() {
@@ -207,7 +222,7 @@ impl<D: Dim> Dem<D> {
 
     /// Largest overlap over the radius of the smaller grain.
     pub fn deepest_overlap(&self) -> f64 {
-        self.deepest_contact().map_or(0.0, |(share, _)| share)
+        self.deepest_contact().map_or(0.0, |(share, _)| share.max(0.0))
     }
 
     /// The contact whose overlap over the radius of the smaller grain is largest, and that share.

@@ -34,6 +34,8 @@ pub(crate) struct View<'a, D: Dim> {
     pub(crate) predicts: bool,
     /// Surfaces farther apart than this do not meet within the step \[m\].
     pub(crate) margin: f64,
+    /// Distance of surfaces up to which some law acts \[m\].
+    pub(crate) law_reach: f64,
     /// Part of the overlap by which each lever arm is shorter than the radius.
     pub(crate) arm_share: f64,
     /// Share of the sum of spins about the normal with which springs turn: one half, or nothing.

@@ -55,6 +55,7 @@ impl<D: Dim> Row<D> {
             predicts: true,
             margin: 0.0,
             twist_share: 0.5,
+            law_reach: 0.0,
             arm_share: 0.5,
         }
     }
@@ -66,7 +67,7 @@ fn material(friction: f64) -> Material {
 }
 
 /// Each contact of a batch, however full, has the bits of the contact alone, under its own law.
-fn a_batch_is_its_contacts<D: Dim, L: ContactLaw<D>>(law_of: impl Fn(usize) -> usize) {
+fn a_batch_is_its_contacts<D: Dim, L: crate::law::MaterialLaw<D>>(law_of: impl Fn(usize) -> usize) {
     let mut materials = Materials::new();
     materials.add(material(0.5)).unwrap();
     materials.add(material(0.001)).unwrap();

@@ -141,7 +141,7 @@ impl<D: Dim> Dem<D> {
         let mut force = std::mem::take(&mut self.grains.acceleration);
         let mut torque = std::mem::take(&mut self.grains.spin_acceleration);
         let seen = view_of(&self.grains, (&self.walls, &self.moving_walls), &self.options, self.last_dt);
-        let cell = self.cell.as_deref();
+        let (cell, law_reach) = (self.cell.as_deref(), self.pairs.reach());
         // In a cell that deforms, velocities are told in the laboratory.
         let started = cell.map(|cell| cell.start_velocity.as_slice()).filter(|list| !list.is_empty());
         let view = View {
@@ -150,7 +150,8 @@ impl<D: Dim> Dem<D> {
             start_velocity: started.unwrap_or(seen.start_velocity),
             dt,
             predicts: self.pairs.predicts(),
-            margin,
+            margin: margin + law_reach,
+            law_reach,
             cell,
             ..seen
         };

@@ -4,7 +4,7 @@
 //! effective mass, `delta` overlap, `a = sqrt(R delta)` radius of the contact area.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Kinematics, Load};
+use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -108,16 +108,18 @@ fn mean_fourth_root(s: f64) -> f64 {
     (power(1.0 + s) - power(1.0 - s)) * 0.4 / s
 }
 
-impl<D: Dim> ContactLaw<D> for HertzNormal {
-    type Memory = ();
-    const TANGENTIAL: bool = false;
-    const NAME: &'static str = "Hertz without friction";
-
+impl<D: Dim> MaterialLaw<D> for HertzNormal {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         let modulus = properties.effective_modulus;
         let damping_factor = (20.0 / 3.0 * modulus).sqrt() * properties.zeta(tension);
         Self { modulus, damping_factor, tension }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for HertzNormal {
+    type Memory = ();
+    const TANGENTIAL: bool = false;
+    const NAME: &'static str = "Hertz without friction";
 
     #[inline(always)]
     fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
@@ -183,20 +185,22 @@ impl<D: Dim> Frictional<D> for HertzMindlin {
     }
 }
 
-impl<D: Dim> ContactLaw<D> for HertzMindlin {
-    /// The spring \[m\] and its stiffness at the last step \[N/m\].
-    type Memory = (D::Spin, f64);
-    const TANGENTIAL: bool = true;
-    const NAME: &'static str = "Hertz-Mindlin";
-
+impl<D: Dim> MaterialLaw<D> for HertzMindlin {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         Self {
-            normal: <HertzNormal as ContactLaw<D>>::between(properties, tension),
+            normal: <HertzNormal as MaterialLaw<D>>::between(properties, tension),
             shear_modulus: properties.effective_shear_modulus,
             damping_ratio: properties.damping_ratio,
             friction: properties.friction,
         }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for HertzMindlin {
+    /// The spring \[m\] and its stiffness at the last step \[N/m\].
+    type Memory = (D::Spin, f64);
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "Hertz-Mindlin";
 
     fn predicts(&self) -> bool {
         self.damping_ratio > 0.0

@@ -1,7 +1,7 @@
 //! Linear springs and dashpots.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Kinematics, Load};
+use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -36,11 +36,7 @@ impl LinearNormal {
     }
 }
 
-impl<D: Dim> ContactLaw<D> for LinearNormal {
-    type Memory = ();
-    const TANGENTIAL: bool = false;
-    const NAME: &'static str = "linear without friction";
-
+impl<D: Dim> MaterialLaw<D> for LinearNormal {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         let stiffness = properties.normal_stiffness;
         let given = properties.normal_damping;
@@ -52,6 +48,12 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
             tension,
         }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearNormal {
+    type Memory = ();
+    const TANGENTIAL: bool = false;
+    const NAME: &'static str = "linear without friction";
 
     #[inline(always)]
     fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
@@ -117,14 +119,10 @@ impl<D: Dim> Frictional<D> for LinearFrictional {
     }
 }
 
-impl<D: Dim> ContactLaw<D> for LinearFrictional {
-    type Memory = D::Spin;
-    const TANGENTIAL: bool = true;
-    const NAME: &'static str = "linear with friction";
-
+impl<D: Dim> MaterialLaw<D> for LinearFrictional {
     fn between(properties: &PairProperties, tension: Tension) -> Self {
         Self {
-            normal: <LinearNormal as ContactLaw<D>>::between(properties, tension),
+            normal: <LinearNormal as MaterialLaw<D>>::between(properties, tension),
             tangential_stiffness: properties.tangential_stiffness,
             damping_ratio: if properties.tangential_damping.is_some() {
                 0.0
@@ -135,6 +133,12 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
             friction: properties.friction,
         }
     }
+}
+
+impl<D: Dim> ContactLaw<D> for LinearFrictional {
+    type Memory = D::Spin;
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "linear with friction";
 
     fn predicts(&self) -> bool {
         self.damping_ratio > 0.0 || self.damping > 0.0

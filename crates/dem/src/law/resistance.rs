@@ -2,7 +2,7 @@
 
 use super::linear::LinearFrictional;
 use super::slider::Motion;
-use super::{ContactLaw, Frictional, Kinematics, Load};
+use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::Dim;
@@ -17,14 +17,16 @@ pub struct Rolling<F> {
     pub rolling_friction: f64,
 }
 
+impl<D: Dim, F: Frictional<D>> MaterialLaw<D> for Rolling<F> {
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self { frictional: F::between(properties, tension), rolling_friction: properties.rolling_friction }
+    }
+}
+
 impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
     type Memory = (F::Memory, D::Spin);
     const TANGENTIAL: bool = true;
     const NAME: &'static str = F::RESISTING[0];
-
-    fn between(properties: &PairProperties, tension: Tension) -> Self {
-        Self { frictional: F::between(properties, tension), rolling_friction: properties.rolling_friction }
-    }
 
     fn predicts(&self) -> bool {
         ContactLaw::<D>::predicts(&self.frictional)
@@ -101,18 +103,20 @@ pub struct Twisting<F> {
 /// Memory of [`Rolling`], and the twisting spring \[m\].
 type Twisted<D, F> = (<Rolling<F> as ContactLaw<D>>::Memory, f64);
 
+impl<D: Dim, F: Frictional<D>> MaterialLaw<D> for Twisting<F> {
+    fn between(properties: &PairProperties, tension: Tension) -> Self {
+        Self {
+            rolling: <Rolling<F> as MaterialLaw<D>>::between(properties, tension),
+            twisting_friction: properties.twisting_friction,
+        }
+    }
+}
+
 impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
     type Memory = Twisted<D, F>;
     const TANGENTIAL: bool = true;
     const TWISTING: bool = true;
     const NAME: &'static str = F::RESISTING[1];
-
-    fn between(properties: &PairProperties, tension: Tension) -> Self {
-        Self {
-            rolling: <Rolling<F> as ContactLaw<D>>::between(properties, tension),
-            twisting_friction: properties.twisting_friction,
-        }
-    }
 
     fn predicts(&self) -> bool {
         ContactLaw::<D>::predicts(&self.rolling)

@@ -1,6 +1,7 @@
 //! The stiffest contact of two materials, and the step that it bears.
 
 use crate::dem::Dem;
+use crate::law::LawLimits;
 use crate::material::PairProperties;
 use crate::setup::ContactModel;
 use granular_core::{Dim, Linear};
@@ -22,6 +23,8 @@ pub(super) struct Stiffest {
     /// Speed of the hardest impact \[m/s\], and its overlap \[m\].
     pub(super) speed: f64,
     pub(super) deepest: f64,
+    /// Whether it is one with a wall.
+    pub(super) on_wall: bool,
     pub(super) names: String,
     /// What was assumed.
     pub(super) assumed: String,
@@ -126,14 +129,18 @@ impl<D: Dim> Dem<D> {
         let is_hertz = self.options.contact == ContactModel::Hertz;
         let present = if is_hertz { self.deepest_overlap() } else { 0.0 };
         let mut pairs = Vec::new();
-        let mut add = |couple: Couple, names: &str, smaller: f64| {
-            pairs.push(match self.options.contact {
+        let mut add = |couple: Couple, (a, b): (usize, usize), names: &str, smaller: f64| {
+            let of_materials = match self.options.contact {
                 ContactModel::Linear => self.linear(&couple, present_speed.max(fall), names, with_times),
                 ContactModel::Hertz => {
                     // Two grains may meet head-on.
                     let closing = if couple.on_wall { present_speed } else { 2.0 * present_speed };
                     self.hertz(&couple, closing.max(fall), (stack, present * smaller), names, with_times)
                 }
+            };
+            pairs.push(match self.pairs.limits(a, b, couple.effective_mass) {
+                Some(limits) => of_materials.of_law(&limits, couple.effective_mass),
+                None => of_materials,
             });
         };
         for (a, b, properties) in self.materials.pairs() {
@@ -148,7 +155,7 @@ impl<D: Dim> Dem<D> {
                     mass: m.min(n),
                     on_wall: false,
                 };
-                add(couple, "grain on grain", r.min(s));
+                add(couple, (a, b), "grain on grain", r.min(s));
             }
             let at_wall = |wall: usize, grain: (f64, f64)| {
                 if walls.contains(&wall) { grain } else { lightest_of_none() }
@@ -164,7 +171,7 @@ impl<D: Dim> Dem<D> {
                     mass,
                     on_wall: true,
                 };
-                add(couple, "grain on wall", radius);
+                add(couple, (a, b), "grain on wall", radius);
             }
         }
         pairs
@@ -180,6 +187,7 @@ impl<D: Dim> Dem<D> {
             rayleigh_time: f64::INFINITY,
             speed,
             deepest: speed * (couple.effective_mass / properties.normal_stiffness).sqrt(),
+            on_wall: couple.on_wall,
             names: names.to_owned(),
             assumed: "lightest grains".to_owned(),
         }
@@ -214,6 +222,7 @@ impl<D: Dim> Dem<D> {
             rayleigh_time: if D::TWISTS && with_times { self.rayleigh_time() } else { f64::INFINITY },
             speed,
             deepest,
+            on_wall: couple.on_wall,
             names: names.to_owned(),
             assumed: format!("lightest grains, impact at {speed:.3} m/s, overlap up to {overlap:.2e} m"),
         }
@@ -233,6 +242,27 @@ impl<D: Dim> Dem<D> {
             inlet.radii.iter().filter_map(times)
         });
         (0..self.len()).filter_map(time).chain(of_inlets).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Stiffest {
+    /// The same with what a law of the caller's own says of itself.
+    fn of_law(self, limits: &LawLimits, effective_mass: f64) -> Self {
+        let per_mass = |value: f64| value / effective_mass;
+        let normal = per_mass(limits.normal_stiffness);
+        Self {
+            oscillator: Oscillator {
+                normal,
+                tangential: per_mass(limits.tangential_stiffness),
+                normal_damping: per_mass(limits.normal_damping),
+                tangential_damping: per_mass(limits.tangential_damping),
+            },
+            stiffness: limits.normal_stiffness,
+            contact_time: PI / normal.sqrt(),
+            rayleigh_time: f64::INFINITY,
+            deepest: self.speed / normal.sqrt(),
+            ..self
+        }
     }
 }
 

@@ -292,9 +292,14 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
             let laws = self.laws;
             let law = laws.between(view.material_of(first), view.material_of(second));
             let mut given = Owed::default();
-            if let Some((kinematics, arms, overlap)) = met {
-                self.guard(first, overlap, view.radius[first].min(view.radius[second]));
+            let met = met.and_then(|(kinematics, arms, overlap)| {
                 let load = law.load(&kinematics, memory, &mut self.tally);
+                let apart = L::REACHES && kinematics.presence == 0.0;
+                let ended = apart && !law.acts(kinematics.gap, memory);
+                (!ended).then_some((kinematics, arms, overlap, load))
+            });
+            if let Some((kinematics, arms, overlap, load)) = met {
+                self.guard(first, overlap, view.radius[first].min(view.radius[second]));
                 let on_first = push_of::<D, L>(&load, kinematics.normal);
                 for axis in 0..D::N {
                     list.pull[axis] += on_first * f64::from(pair.shift[axis]);
@@ -351,5 +356,6 @@ pub(crate) fn meet_image<D: Dim, L: ContactLaw<D>>(
     other.start_velocity += start_rate;
     let pair = Pair { own: view.body::<L>(first), other, arm, distance_squared: squared };
     let (kinematics, arms) = pair.meet::<L>(view);
-    (kinematics.presence != 0.0).then(|| (kinematics, arms, pair.overlap()))
+    let reached = L::REACHES && kinematics.gap < view.law_reach;
+    (kinematics.presence != 0.0 || reached).then(|| (kinematics, arms, pair.overlap()))
 }

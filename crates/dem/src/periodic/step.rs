@@ -101,21 +101,22 @@ impl<D: Dim> Dem<D> {
 
     /// Centres farther apart than this are in no list \[m\].
     fn pair_reach(&self) -> f64 {
-        2.0 * self.largest + self.reach
+        2.0 * self.largest + self.pairs.reach() + self.reach
     }
 
     /// How far the flow of the cell moves near surfaces past each other in a step \[m\]; nothing without a cell.
     pub(crate) fn stride_of_flow(&self, dt: f64) -> f64 {
         let Some(cell) = self.cell.as_deref() else { return 0.0 };
-        0.5 * cell.gradient.norm() * (2.0 * self.largest + self.reach) * dt
+        0.5 * cell.gradient.norm() * (2.0 * self.largest + self.pairs.reach() + self.reach) * dt
     }
 
     /// Books that grains moved so far by themselves \[m\]; `stride` counts the flow as well.
     pub(crate) fn drift_in_cell(&mut self, own: f64, stride: f64) -> Result<(), StepError> {
-        let (largest, reach) = (self.largest, self.reach);
+        let reach = self.reach;
+        let farthest = 2.0 * self.largest + self.pairs.reach();
         let Some(cell) = self.cell.as_deref_mut() else { return Ok(()) };
         cell.drift += own;
-        let (narrowest, needed) = (cell.narrowest(), NARROWEST * (2.0 * largest + reach.max(4.0 * stride)));
+        let (narrowest, needed) = (cell.narrowest(), NARROWEST * (farthest + reach.max(4.0 * stride)));
         if narrowest < needed { Err(too_narrow(narrowest, needed)) } else { Ok(()) }
     }
 

@@ -72,7 +72,8 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
     let mut kinematics = kinematics_of::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap);
     kinematics.effective_mass = view.mass[first];
     kinematics.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
-    (kinematics.presence != 0.0).then_some((kinematics, arm))
+    let reached = L::REACHES && kinematics.gap < view.law_reach;
+    (kinematics.presence != 0.0 || reached).then_some((kinematics, arm))
 }
 
 impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
@@ -112,6 +113,11 @@ impl<D: Dim, L: ContactLaw<D>, const LEDGER: bool> Kernel<'_, D, L, LEDGER> {
         let law = self.laws.between(view.material_of(first), view.walls[wall].material.0);
         self.guard(first, kinematics.overlap, view.radius[first]);
         let load = law.load(kinematics, memory, &mut self.tally);
+        if L::REACHES && kinematics.presence == 0.0 && !law.acts(kinematics.gap, memory) {
+            law.release(memory, &mut self.tally);
+            *memory = L::Memory::default();
+            return;
+        }
         let local = first - self.start;
         let push = push_of::<D, L>(&load, kinematics.normal);
         self.force[local] += push;

@@ -13,7 +13,7 @@
 use super::contact::{Surface, meet_surface};
 use crate::contact::Contact;
 use crate::contact::Partner;
-use crate::contact::contact_of;
+use crate::contact::{contact_of, ongoing, overlap_of};
 use crate::law::{ContactLaw, Kinematics};
 use crate::lists::Places;
 use crate::pass::Kernel;
@@ -191,7 +191,7 @@ fn find<D: Dim>(
     for (place, &part) in parts.iter().enumerate() {
         let (distance, normal) = facets.distance_to(part as usize, point);
         let overlap = radius - distance;
-        if overlap > -view.margin {
+        if overlap > -view.margin.max(view.law_reach) {
             found.push(Candidate { place: place as u32, part, normal, overlap });
         }
     }
@@ -348,7 +348,8 @@ pub(crate) fn visit<D: Dim, L: ContactLaw<D>>(
         let slots = &list.slots[range];
         let mut old: Vec<_> =
             slots.iter().filter(|slot| slot.memory != L::Memory::default()).copied().collect();
-        for candidate in candidates.iter().filter(|candidate| candidate.overlap > 0.0) {
+        let least = if L::REACHES { -view.law_reach } else { 0.0 };
+        for candidate in candidates.iter().filter(|candidate| candidate.overlap > least) {
             let Some((kinematics, _)) = meet::<D, L>(view, entry, &pose, candidate) else { continue };
             let memory = if balls {
                 slots[candidate.place as usize].memory
@@ -357,7 +358,10 @@ pub(crate) fn visit<D: Dim, L: ContactLaw<D>>(
             };
             let (first, wall) = (entry.grain as usize, entry.wall as usize);
             let law = laws.between(view.material_of(first), view.walls[wall].material.0);
-            let branch = kinematics.normal * (view.radius[first] - kinematics.overlap);
+            if !ongoing::<D, L>(law, &kinematics, &memory) {
+                continue;
+            }
+            let branch = kinematics.normal * (view.radius[first] - overlap_of::<D, L>(&kinematics));
             visit(contact_of::<D, L>(law, &kinematics, memory, (first, Partner::Wall(wall)), branch));
         }
     }

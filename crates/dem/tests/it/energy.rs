@@ -7,7 +7,7 @@ use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
 use granular_dem::law::Kinematics;
 use granular_dem::{
     ContactLaw, ContactModel, Dem, Dem2, Elasticity, Grain, LinearFrictional, LinearRolling, Material,
-    Materials, Options, PairProperties, Setup, Tally, Tension, Wall,
+    MaterialLaw, Materials, Options, PairProperties, Setup, Tally, Tension, Wall,
 };
 use proptest::prelude::*;
 
@@ -144,6 +144,7 @@ fn drive<D: Dim, L: ContactLaw<D>>(law: L, friction: f64, stride: f64, seed: u64
     let normal = D::Vec::along(0, 1.0);
     let mut kinematics = Kinematics::<D> {
         normal,
+        gap: 0.0,
         overlap,
         presence: 1.0,
         approach: 0.0,
@@ -202,8 +203,8 @@ proptest! {
         seed in any::<u64>(), friction in 0.05..1.0, damping in 0.0..1.0, stride in 0.02..0.5,
     ) {
         let properties = properties(friction, damping);
-        let sliding = <LinearFrictional as ContactLaw<D2>>::between(&properties, Tension::Cut);
-        let rolling = <LinearRolling as ContactLaw<D3>>::between(&properties, Tension::Cut);
+        let sliding = <LinearFrictional as MaterialLaw<D2>>::between(&properties, Tension::Cut);
+        let rolling = <LinearRolling as MaterialLaw<D3>>::between(&properties, Tension::Cut);
         for cycle in [
             drive::<D2, _>(sliding, friction, stride, seed),
             drive::<D3, _>(sliding, friction, stride, seed),
@@ -219,7 +220,7 @@ proptest! {
 #[test]
 fn a_small_cycle_is_elastic_and_a_large_one_pays_for_its_sliding() {
     let elastic = properties(1.0, 0.0);
-    let law = <LinearFrictional as ContactLaw<D2>>::between(&elastic, Tension::Cut);
+    let law = <LinearFrictional as MaterialLaw<D2>>::between(&elastic, Tension::Cut);
     let cycle = drive::<D2, _>(law, 1.0, 0.005, 1);
     assert!(cycle.work.abs() < 1e-12 * cycle.scale && cycle.lost.abs() < 1e-12 * cycle.scale, "{cycle:?}");
     let cycle = drive::<D2, _>(law, 1.0, 0.3, 1);

@@ -7,8 +7,8 @@ use granular_core::{D2, D3, Dim, Linear, Solver, Vector};
 use granular_dem::law::Kinematics;
 use granular_dem::material::damping_for_restitution;
 use granular_dem::{
-    ContactLaw, ContactModel, Dem, Elasticity, Grain, HertzImpact, HertzMindlin, Material, Materials,
-    Options, PairProperties, Setup, Tally, Tension,
+    ContactLaw, ContactModel, Dem, Elasticity, Grain, HertzImpact, HertzMindlin, Material, MaterialLaw,
+    Materials, Options, PairProperties, Setup, Tally, Tension,
 };
 use proptest::prelude::*;
 
@@ -141,13 +141,14 @@ fn without_damping_overlap_force_and_duration_follow_the_closed_form() {
 /// Work done on a contact that is driven along the normal and across it, the energy left in it
 /// and its losses.
 fn driven<D: Dim>(properties: &PairProperties, stride: f64, seed: u64) -> [f64; 3] {
-    let law = <HertzMindlin as ContactLaw<D>>::between(properties, Tension::Cut);
+    let law = <HertzMindlin as MaterialLaw<D>>::between(properties, Tension::Cut);
     let mut random = Random::new(seed);
     let (overlap, dt) = (1e-6, 1e-7);
     let normal = D::Vec::along(0, 1.0);
     let zero = <D::Spin as Linear>::ZERO;
     let mut kinematics = Kinematics::<D> {
         normal,
+        gap: 0.0,
         overlap,
         presence: 1.0,
         approach: 0.0,

@@ -5,6 +5,7 @@
 
 mod coarse;
 mod coarse_cell;
+mod cohesion;
 mod conservation;
 mod contract;
 mod energy;

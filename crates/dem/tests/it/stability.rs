@@ -49,6 +49,7 @@ impl Pressed {
         let options = Options { tension: self.tension, ..Options::default() };
         let setup = Setup { materials, grains: vec![grain], walls, gravity: down::<D>(WEIGHT), options };
         let mut dem = Dem::new(setup).unwrap();
+        dem.allow_any_step();
         // A new grain is taken to fall; this one rests, and a first guess of its acceleration that
         // is wrong by its weight would be a far larger disturbance.
         let mut saved = Section::new("solver");
