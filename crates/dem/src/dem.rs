@@ -4,7 +4,7 @@ mod changes;
 mod single;
 mod step;
 
-pub use single::Body;
+pub use single::OtherBody;
 
 use crate::choice::{choose_law, needs_rotation};
 use crate::contacts::{Contacts, Pairs};
@@ -431,3 +431,6 @@ impl<D: Dim> Solver for Dem<D> {
         self.report_memory()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! How two bodies move at their contact, from how they move as a whole.
 
-use crate::law::{ContactLaw, Kinematics, Load};
+use crate::law::{ContactLaw, ContactLoad, Kinematics};
 use crate::view::{Body, View};
 use granular_core::{Dim, Linear};
 
@@ -23,7 +23,7 @@ pub(crate) fn share_of_step(overlap: f64, approach: f64, dt: f64) -> (f64, f64) 
 
 /// Force vector of a load.
 #[inline(always)]
-pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &Load<D>, normal: D::Vec) -> D::Vec {
+pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &ContactLoad<D>, normal: D::Vec) -> D::Vec {
     let along = normal * load.normal;
     if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
 }

@@ -3,6 +3,11 @@
 //! Symbols of this module: `k` stiffness, `c` damping, `n` the unit normal from the second to
 //! the first body, `xi` tangential displacement. Tangential quantities are kept as `n x ...`
 //! (see [`granular_core::dim`]), so one source serves disks and spheres.
+//!
+//! The spring of a contact is laid into the tangent plane as the normal turns, its length kept. What turns about the
+//! normal is a convention: here the spring of two spheres turns about it with the mean of both spins, so that the force
+//! in a pair that turns as one stays what it is in the frame of the pair. Other codes leave this turn out; results differ
+//! where spheres that stick spin about their normal, and [`SpringTurning`](crate::SpringTurning) offers both.
 
 mod hertz;
 mod linear;
@@ -105,7 +110,7 @@ impl<D: Dim> Kinematics<D> {
 
 /// What a contact does to the first body; the second gets the opposite.
 #[derive(Clone, Copy, Debug)]
-pub struct Load<D: Dim> {
+pub struct ContactLoad<D: Dim> {
     /// Force along the normal \[N\], positive when it repels.
     pub normal: f64,
     /// `n x` tangential force \[N\].
@@ -114,7 +119,7 @@ pub struct Load<D: Dim> {
     pub rolling: D::Spin,
 }
 
-impl<D: Dim> Load<D> {
+impl<D: Dim> ContactLoad<D> {
     /// A load along the normal.
     #[inline(always)]
     pub fn along_normal(force: f64) -> Self {
@@ -188,7 +193,7 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
         kinematics: &Kinematics<D>,
         memory: &mut Self::Memory,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D>;
+    ) -> ContactLoad<D>;
     /// Tells the tally of energy that was still stored when a contact ended.
     #[inline(always)]
     fn release<const LEDGER: bool>(&self, memory: &Self::Memory, tally: &mut Tally<LEDGER>) {
@@ -214,7 +219,7 @@ pub trait ContactLaw<D: Dim>: Copy + Debug + Send + Sync + 'static {
     }
     /// The load between steps and the energy stored in springs \[J\], for output. The step of the
     /// kinematics is the last one taken.
-    fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (Load<D>, f64);
+    fn at_rest(&self, kinematics: &Kinematics<D>, memory: Self::Memory) -> (ContactLoad<D>, f64);
 }
 
 /// A law that follows from the properties of materials.

@@ -65,15 +65,15 @@ mod view;
 pub mod walls;
 
 pub use contact::{Contact, Partner};
-pub use dem::{Body, Dem};
+pub use dem::{Dem, OtherBody};
 pub use grains::Grain;
 pub use granular_core::coarse::{CoarseFields, CoarseGrid};
 pub use granular_core::shape::{Facets, Shape};
 pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
 pub use inlets::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
 pub use law::{
-    ContactLaw, HertzMindlin, HertzNormal, Kinematics, LawLimits, LinearFrictional, LinearNormal,
-    LinearRolling, Load, MaterialLaw, Rolling, Twisting,
+    ContactLaw, ContactLoad, HertzMindlin, HertzNormal, Kinematics, LawLimits, LinearFrictional,
+    LinearNormal, LinearRolling, MaterialLaw, Rolling, Twisting,
 };
 pub use ledger::{Losses, Tally};
 pub use limits::stability_step;

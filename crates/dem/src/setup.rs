@@ -34,7 +34,7 @@ pub enum SpringTurning {
     /// It turns about the normal with the mean spin of the two: a pair that turns as one keeps the force in its own frame.
     #[default]
     MeanSpin,
-    /// It does not turn about the normal, as in codes that only lay it into the new tangent plane \[Luding2008, eq. 17\]: the
+    /// It does not turn about the normal, as in codes that only lay it into the new tangent plane: the
     /// force of a pair that turns as one then turns against it.
     NormalOnly,
 }

@@ -8,7 +8,7 @@ use granular_core::{Dim, Linear};
 
 /// A body that a grain touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body<'a> {
+pub enum OtherBody<'a> {
     /// A grain, by its stable identifier.
     Grain(u32),
     /// A wall, by its name.
@@ -112,7 +112,7 @@ impl<D: Dim> Dem<D> {
     pub fn set_tangential_displacement(
         &mut self,
         id: u32,
-        body: Body<'_>,
+        body: OtherBody<'_>,
         displacement: D::Vec,
     ) -> Result<(), SetupError> {
         let first = self.index_of(id)?;
@@ -135,11 +135,11 @@ impl<D: Dim> Dem<D> {
     }
 
     /// The body as contacts know it, and the normal from it to the grain.
-    fn contact_with(&self, first: usize, body: Body<'_>) -> Result<(Partner, D::Vec), SetupError> {
+    fn contact_with(&self, first: usize, body: OtherBody<'_>) -> Result<(Partner, D::Vec), SetupError> {
         let partner =
             match body {
-                Body::Grain(id) => Partner::Grain(self.index_of(id)?),
-                Body::Wall(name) => {
+                OtherBody::Grain(id) => Partner::Grain(self.index_of(id)?),
+                OtherBody::Wall(name) => {
                     let found = self.walls.iter().position(|wall| wall.name == name);
                     Partner::Wall(found.ok_or_else(|| {
                         SetupError::new(format!("wall `{name}`"), f64::NAN, "one of the scene")

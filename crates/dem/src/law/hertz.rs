@@ -4,7 +4,7 @@
 //! effective mass, `delta` overlap, `a = sqrt(R delta)` radius of the contact area.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
+use super::{ContactLaw, ContactLoad, Frictional, Kinematics, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -81,17 +81,17 @@ impl HertzNormal {
         m: &Kinematics<D>,
         area: &Area,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let force = self.force(area, m.presence, m.approach);
         // Of what the prediction adds, the spring keeps half (see `Kinematics::kept`) in a linear contact, and nearly so in an
         // impact of this one: the balance is better by 4 to 40 times.
         tally.normal_damping(|| m.damped(force, area.force, 0.5 * area.damping));
-        Load::along_normal(force)
+        ContactLoad::along_normal(force)
     }
 
-    fn rest<D: Dim>(&self, m: &Kinematics<D>) -> (Load<D>, f64) {
+    fn rest<D: Dim>(&self, m: &Kinematics<D>) -> (ContactLoad<D>, f64) {
         let area = self.area(m);
-        (Load::along_normal(self.force(&area, 1.0, m.approach)), 0.4 * area.force * m.overlap)
+        (ContactLoad::along_normal(self.force(&area, 1.0, m.approach)), 0.4 * area.force * m.overlap)
     }
 }
 
@@ -122,13 +122,18 @@ impl<D: Dim> ContactLaw<D> for HertzNormal {
     const NAME: &'static str = "Hertz without friction";
 
     #[inline(always)]
-    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Kinematics<D>,
+        (): &mut (),
+        tally: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
         self.load_on(m, &self.area(m), tally)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
         self.rest(m)
     }
 }
@@ -212,9 +217,9 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         m: &Kinematics<D>,
         (spring, stiffness): &mut (D::Spin, f64),
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let area = self.normal.area(m);
-        let mut load: Load<D> = self.normal.load_on(m, &area, tally);
+        let mut load: ContactLoad<D> = self.normal.load_on(m, &area, tally);
         let cap = self.friction * load.normal.max(0.0);
         *spring = D::follow(*spring, m.normal, m.twist * m.dt);
         let (motion, slider) = (Motion::of(m, m.slip, m.start_slip), self.slider_on(&area));
@@ -246,8 +251,8 @@ impl<D: Dim> ContactLaw<D> for HertzMindlin {
         Some((Slider::half_a_step_ago(spring, m), stiffness))
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (Load<D>, f64) {
-        let (mut load, energy): (Load<D>, f64) = self.normal.rest(m);
+    fn at_rest(&self, m: &Kinematics<D>, (spring, stiffness): (D::Spin, f64)) -> (ContactLoad<D>, f64) {
+        let (mut load, energy): (ContactLoad<D>, f64) = self.normal.rest(m);
         let cap = self.friction * load.normal.max(0.0);
         let slider = self.slider_on(&self.normal.area(m));
         let (force, stored) = slider.at_rest(spring, m.slip, (m.last_dt, stiffness), cap);

@@ -1,7 +1,7 @@
 //! Linear springs and dashpots.
 
 use super::slider::{Motion, Slider};
-use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
+use super::{ContactLaw, ContactLoad, Frictional, Kinematics, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::{Dim, Linear};
@@ -56,24 +56,30 @@ impl<D: Dim> ContactLaw<D> for LinearNormal {
     const NAME: &'static str = "linear without friction";
 
     #[inline(always)]
-    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Kinematics<D>,
+        (): &mut (),
+        tally: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
         let damping = self.damping(m.effective_mass);
         let force = self.force(m.overlap, m.presence, m.approach, damping);
         tally
             .normal_damping(|| m.damped(force, self.stiffness * m.overlap, damping) + m.kept(self.stiffness));
-        Load::along_normal(force)
+        ContactLoad::along_normal(force)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
         let damping = self.damping(m.effective_mass);
         let force = self.force(m.overlap, 1.0, m.approach, damping);
-        (Load::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
+        (ContactLoad::along_normal(force), 0.5 * self.stiffness * m.overlap * m.overlap)
     }
 }
 
-/// [`LinearNormal`] with a tangential spring under a Coulomb cap \[DEM-6, DEM-7\].
+/// [`LinearNormal`] with a tangential spring under a Coulomb cap \[DEM-6, DEM-7\]. How the spring of spheres turns about
+/// their normal is a choice: [`SpringTurning`](crate::SpringTurning).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearFrictional {
     /// Along the normal.
@@ -150,8 +156,8 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         m: &Kinematics<D>,
         memory: &mut D::Spin,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
-        let mut load: Load<D> = self.normal.load(m, &mut (), tally);
+    ) -> ContactLoad<D> {
+        let mut load: ContactLoad<D> = self.normal.load(m, &mut (), tally);
         let cap = self.friction * load.normal.max(0.0);
         *memory = D::follow(*memory, m.normal, m.twist * m.dt);
         let slid = self.slider(m.effective_mass).load(memory, &Motion::of(m, m.slip, m.start_slip), cap);
@@ -185,7 +191,7 @@ impl<D: Dim> ContactLaw<D> for LinearFrictional {
         Some(Slider::half_a_step_ago(spring, m))
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, memory: D::Spin) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, memory: D::Spin) -> (ContactLoad<D>, f64) {
         let (mut load, energy) = self.normal.at_rest(m, ());
         let cap = self.friction * load.normal.max(0.0);
         let slider = self.slider(m.effective_mass);

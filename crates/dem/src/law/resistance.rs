@@ -2,7 +2,7 @@
 
 use super::linear::LinearFrictional;
 use super::slider::Motion;
-use super::{ContactLaw, Frictional, Kinematics, Load, MaterialLaw};
+use super::{ContactLaw, ContactLoad, Frictional, Kinematics, MaterialLaw};
 use crate::ledger::Tally;
 use crate::material::{PairProperties, Tension};
 use granular_core::Dim;
@@ -38,9 +38,9 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         m: &Kinematics<D>,
         (grip, rolling): &mut (F::Memory, D::Spin),
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let last = *grip;
-        let mut load: Load<D> = self.frictional.load(m, grip, tally);
+        let mut load: ContactLoad<D> = self.frictional.load(m, grip, tally);
         let cap = self.rolling_friction * load.normal.max(0.0);
         *rolling = D::follow(*rolling, m.normal, m.twist * m.dt);
         let motion = Motion::of(m, m.roll * m.effective_radius, m.start_roll * m.effective_radius);
@@ -76,7 +76,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Rolling<F> {
         Some((self.frictional.with_spring(m, grip, spring)?, rolling))
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (grip, rolling): (F::Memory, D::Spin)) -> (ContactLoad<D>, f64) {
         let (mut load, energy) = self.frictional.at_rest(m, grip);
         let cap = self.rolling_friction * load.normal.max(0.0);
         let (rate, last) = (m.roll * m.effective_radius, self.frictional.last_stiffness(&grip));
@@ -128,9 +128,9 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         m: &Kinematics<D>,
         (rolling, twisting): &mut Twisted<D, F>,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let last = rolling.0;
-        let mut load: Load<D> = self.rolling.load(m, rolling, tally);
+        let mut load: ContactLoad<D> = self.rolling.load(m, rolling, tally);
         let cap = self.twisting_friction * load.normal.max(0.0);
         let radius = m.effective_radius;
         let motion = Motion::of(m, m.twisting * radius, m.start_twisting * radius);
@@ -168,7 +168,7 @@ impl<D: Dim, F: Frictional<D>> ContactLaw<D> for Twisting<F> {
         Some((self.rolling.with_spring(m, rolling, spring)?, twisting))
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (rolling, twisting): Twisted<D, F>) -> (ContactLoad<D>, f64) {
         let (mut load, energy) = self.rolling.at_rest(m, rolling);
         let cap = self.twisting_friction * load.normal.max(0.0);
         let frictional = &self.rolling.frictional;

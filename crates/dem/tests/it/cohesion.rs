@@ -4,7 +4,7 @@ use granular_core::glam::{DVec2, DVec3};
 use granular_core::quantity::Load as Given;
 use granular_core::{D2, D3, Dim, Linear, Section, Solver, StepError, Vector};
 use granular_dem::{
-    CellControl, ContactLaw, Control, Dem, Grain, Kinematics, LawLimits, Load, Material, MaterialId,
+    CellControl, ContactLaw, ContactLoad, Control, Dem, Grain, Kinematics, LawLimits, Material, MaterialId,
     Materials, Options, PeriodicCell, Setup, Tally, Wall,
 };
 
@@ -57,7 +57,7 @@ impl<D: Dim> ContactLaw<D> for Bridge {
         m: &Kinematics<D>,
         bridge: &mut f64,
         tally: &mut Tally<LEDGER>,
-    ) -> Load<D> {
+    ) -> ContactLoad<D> {
         let forms = *bridge == 0.0 && m.presence > 0.0;
         if forms {
             *bridge = 1.0;
@@ -66,24 +66,24 @@ impl<D: Dim> ContactLaw<D> for Bridge {
         }
         if *bridge == 0.0 || m.gap >= self.rupture {
             *bridge = 0.0;
-            return Load::along_normal(0.0);
+            return ContactLoad::along_normal(0.0);
         }
         // In the step in which it forms it pulls for the share of the step.
         let share = if forms { m.presence } else { 1.0 };
-        Load::along_normal(self.stiffness * m.overlap - share * self.pull(m.gap))
+        ContactLoad::along_normal(self.stiffness * m.overlap - share * self.pull(m.gap))
     }
 
     fn reversed(bridge: f64) -> f64 {
         bridge
     }
 
-    fn at_rest(&self, m: &Kinematics<D>, bridge: f64) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, bridge: f64) -> (ContactLoad<D>, f64) {
         let overlap = (-m.gap).max(0.0);
         let elastic = 0.5 * self.stiffness * overlap * overlap;
         if bridge == 0.0 {
-            return (Load::along_normal(self.stiffness * overlap), elastic);
+            return (ContactLoad::along_normal(self.stiffness * overlap), elastic);
         }
-        (Load::along_normal(self.stiffness * overlap - self.pull(m.gap)), elastic + self.energy(m.gap))
+        (ContactLoad::along_normal(self.stiffness * overlap - self.pull(m.gap)), elastic + self.energy(m.gap))
     }
 }
 
@@ -110,18 +110,23 @@ impl<D: Dim> ContactLaw<D> for Attraction {
         Some(LawLimits { normal_stiffness: self.stiffness, ..LawLimits::default() })
     }
 
-    fn load<const LEDGER: bool>(&self, m: &Kinematics<D>, (): &mut (), _: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Kinematics<D>,
+        (): &mut (),
+        _: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
         let share = (1.0 - m.gap.max(0.0) / self.range).max(0.0);
-        Load::along_normal(self.stiffness * m.overlap - self.force * share * share)
+        ContactLoad::along_normal(self.stiffness * m.overlap - self.force * share * share)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
+    fn at_rest(&self, m: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
         let (overlap, share) = ((-m.gap).max(0.0), (1.0 - m.gap.max(0.0) / self.range).max(0.0));
         let energy = -self.force * self.range * share.powi(3) / 3.0 - self.force * overlap;
         let force = self.stiffness * overlap - self.force * share * share;
-        (Load::along_normal(force), 0.5 * self.stiffness * overlap * overlap + energy)
+        (ContactLoad::along_normal(force), 0.5 * self.stiffness * overlap * overlap + energy)
     }
 }
 
@@ -296,15 +301,20 @@ impl<D: Dim> ContactLaw<D> for Broken {
     const TANGENTIAL: bool = false;
     const NAME: &'static str = "broken";
 
-    fn load<const LEDGER: bool>(&self, _: &Kinematics<D>, (): &mut (), tally: &mut Tally<LEDGER>) -> Load<D> {
+    fn load<const LEDGER: bool>(
+        &self,
+        _: &Kinematics<D>,
+        (): &mut (),
+        tally: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
         tally.normal_damping(|| f64::NAN);
-        Load::along_normal(0.0)
+        ContactLoad::along_normal(0.0)
     }
 
     fn reversed((): ()) {}
 
-    fn at_rest(&self, _: &Kinematics<D>, (): ()) -> (Load<D>, f64) {
-        (Load::along_normal(0.0), 0.0)
+    fn at_rest(&self, _: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
+        (ContactLoad::along_normal(0.0), 0.0)
     }
 }
 
@@ -332,4 +342,48 @@ fn the_limits_are_those_of_the_law() {
     assert!((softer.stable_step() / dem.stable_step() - 2.0).abs() < 1e-12);
     let effective = 0.5 * dem.mass_of(0);
     assert!((dem.stable_step() / (2.0 * (effective / BRIDGE.stiffness).sqrt()) - 1.0).abs() < 1e-12);
+}
+
+/// A law with friction that reads no predicted motion, and says so.
+#[derive(Clone, Copy, Debug)]
+struct Blind;
+
+impl<D: Dim> ContactLaw<D> for Blind {
+    type Memory = ();
+    const TANGENTIAL: bool = true;
+    const NAME: &'static str = "blind";
+
+    fn predicts(&self) -> bool {
+        false
+    }
+
+    fn load<const LEDGER: bool>(
+        &self,
+        m: &Kinematics<D>,
+        (): &mut (),
+        _: &mut Tally<LEDGER>,
+    ) -> ContactLoad<D> {
+        assert!(m.slip == D::Spin::ZERO && m.roll == D::Spin::ZERO, "nothing is predicted that no law reads");
+        assert!(m.start_slip != D::Spin::ZERO, "the surfaces do slip");
+        ContactLoad::along_normal(0.0)
+    }
+
+    fn reversed((): ()) {}
+
+    fn at_rest(&self, _: &Kinematics<D>, (): ()) -> (ContactLoad<D>, f64) {
+        (ContactLoad::along_normal(0.0), 0.0)
+    }
+}
+
+#[test]
+fn motion_is_predicted_for_laws_that_read_it_only_with_and_without_a_cell() {
+    for in_cell in [false, true] {
+        let grains = pair::<D2>(-1e-5, 0.0).into_iter().map(|grain| grain.turning(300.0)).collect();
+        let mut dem = of(Blind, grains, false);
+        if in_cell {
+            dem.set_cell(PeriodicCell::new(DVec2::ZERO, DVec2::splat(10e-3), &[true, true]).unwrap())
+                .unwrap();
+        }
+        dem.advance(1e-8, 3).unwrap();
+    }
 }

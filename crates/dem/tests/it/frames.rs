@@ -45,7 +45,7 @@ fn after<D: Dim>(setup: Setup<D>, steps: u64) -> (Vec<Grain<D>>, f64) {
 fn run<D: Dim>(setup: Setup<D>, steps: u64) -> (Vec<Grain<D>>, f64, bool) {
     let (before, gravity) = (setup.grains.clone(), setup.gravity);
     let mut dem = Dem::new(setup).unwrap();
-    // Beyond the limit of the two lightest grains, which do not meet.
+    // Beyond the limit of a contact of the two lightest grains in space.
     dem.allow_any_step();
     let dt = if D::N == 2 { 2e-6 } else { 6e-8 * 2.0 };
     dem.advance(dt, steps).unwrap();

@@ -4,7 +4,7 @@ use granular_core::glam::{DVec2, DVec3};
 use granular_core::{D2, D3, Dim, Linear, Matrix, Section, Solver, StepError, Vector};
 use granular_dem::material::restitution_of_damping;
 use granular_dem::{
-    Body, Contact, ContactModel, Dem, Dem2, Elasticity, Grain, Material, MaterialId, Materials, Options,
+    Contact, ContactModel, Dem, Dem2, Elasticity, Grain, Material, MaterialId, Materials, Options, OtherBody,
     PairOverride, PeriodicCell, Setup, SpringTurning, Tension, Wall,
 };
 
@@ -56,7 +56,7 @@ fn a_disk_swings_on_the_spring_that_it_was_given() {
     );
     // Held up by gravity, so that the overlap stays.
     dem.set_gravity(DVec2::new(0.0, -material.normal_stiffness * overlap / dem.mass()));
-    dem.set_tangential_displacement(0, Body::Wall("floor"), DVec2::new(displacement, 0.0)).unwrap();
+    dem.set_tangential_displacement(0, OtherBody::Wall("floor"), DVec2::new(displacement, 0.0)).unwrap();
     let contact = only(&dem);
     assert!((contact.tangential_displacement() - DVec2::new(displacement, 0.0)).length() < 1e-20);
     assert!(
@@ -82,7 +82,8 @@ fn springs_are_read_as_they_were_set<D: Dim>(model: ContactModel) {
     for (own, other) in [(0, 1), (1, 0)] {
         let mut dem = of::<D>(material, grains.clone(), false, D::Vec::ZERO, options);
         // The part along the normal does not count.
-        dem.set_tangential_displacement(own, Body::Grain(other), across + D::Vec::along(0, 3e-7)).unwrap();
+        dem.set_tangential_displacement(own, OtherBody::Grain(other), across + D::Vec::along(0, 3e-7))
+            .unwrap();
         let contact = only(&dem);
         let first_is_own = dem.grains().nth(contact.first).unwrap().0 == own;
         let sign = if first_is_own { 1.0 } else { -1.0 };
@@ -108,12 +109,12 @@ fn springs_across_the_face_of_a_cell_are_set_too_and_others_are_refused() {
     ];
     let mut dem = of::<D2>(Material::default(), grains.clone(), true, DVec2::ZERO, with_ledger());
     assert!(
-        dem.set_tangential_displacement(0, Body::Grain(1), DVec2::Y * 1e-7).is_err(),
+        dem.set_tangential_displacement(0, OtherBody::Grain(1), DVec2::Y * 1e-7).is_err(),
         "they do not touch"
     );
-    assert!(dem.set_tangential_displacement(0, Body::Wall("lid"), DVec2::Y).is_err());
+    assert!(dem.set_tangential_displacement(0, OtherBody::Wall("lid"), DVec2::Y).is_err());
     dem.set_cell(PeriodicCell::new(DVec2::ZERO, DVec2::splat(10e-3), &[true, false]).unwrap()).unwrap();
-    dem.set_tangential_displacement(0, Body::Grain(1), DVec2::Y * 1e-7).unwrap();
+    dem.set_tangential_displacement(0, OtherBody::Grain(1), DVec2::Y * 1e-7).unwrap();
     let contact = only(&dem);
     assert_ne!(contact.shift, [0; 3]);
     assert!((contact.tangential_displacement().y.abs() - 1e-7).abs() < 1e-20);
@@ -126,7 +127,7 @@ fn springs_across_the_face_of_a_cell_are_set_too_and_others_are_refused() {
         with_ledger(),
     );
     assert!(
-        smooth.set_tangential_displacement(0, Body::Grain(1), DVec2::Y).is_err(),
+        smooth.set_tangential_displacement(0, OtherBody::Grain(1), DVec2::Y).is_err(),
         "no friction, no spring"
     );
 }
@@ -145,7 +146,7 @@ fn springs_of_spheres_turn_about_the_normal_as_is_chosen() {
             dem.set_mass(id, 1e6).unwrap();
             dem.set_spin(id, DVec3::X * 1000.0).unwrap();
         }
-        dem.set_tangential_displacement(0, Body::Grain(1), DVec3::Y * 1e-8).unwrap();
+        dem.set_tangential_displacement(0, OtherBody::Grain(1), DVec3::Y * 1e-8).unwrap();
         let before = only(&dem).tangential_displacement();
         dem.advance(0.5e-3 * std::f64::consts::PI / 2000.0, 2000).unwrap();
         let after = only(&dem).tangential_displacement();
