@@ -135,9 +135,12 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
     /// is one tangent only and nothing to do.
     fn follow(spring: Self::Spin, normal: Self::Vec, twist: f64) -> Self::Spin;
     /// Where a unit normal was a short `time` \[s\] ago when it turns at this rate \[1/s\] (of which the part
-    /// along the normal does not count), to the second order. In the plane the tangential slip does not
-    /// depend on it to that order, and the normal stays as it is.
-    fn normal_before(normal: Self::Vec, rate: impl FnOnce() -> Self::Vec, time: f64) -> Self::Vec;
+    /// along the normal does not count), to the second order.
+    #[inline(always)]
+    fn normal_before(normal: Self::Vec, rate: impl FnOnce() -> Self::Vec, time: f64) -> Self::Vec {
+        let rate = rate();
+        normal - (rate - normal * rate.dot(normal)) * time
+    }
     /// Rate of turning about the normal; zero in the plane.
     fn twist(spin: Self::Spin, normal: Self::Vec) -> f64;
     /// The spin or torque of this size about the normal; zero in the plane.
@@ -289,10 +292,6 @@ impl Dim for D2 {
         spring
     }
     #[inline(always)]
-    fn normal_before(normal: DVec2, _: impl FnOnce() -> DVec2, _: f64) -> DVec2 {
-        normal
-    }
-    #[inline(always)]
     fn twist(_spin: f64, _normal: DVec2) -> f64 {
         0.0
     }
@@ -355,11 +354,6 @@ impl Dim for D3 {
         let flat_squared = flat.length_squared();
         // Compared so that what is not a number stays so instead of becoming zero.
         if flat_squared == 0.0 { DVec3::ZERO } else { flat * (squared / flat_squared).sqrt() }
-    }
-    #[inline(always)]
-    fn normal_before(normal: DVec3, rate: impl FnOnce() -> DVec3, time: f64) -> DVec3 {
-        let rate = rate();
-        normal - (rate - normal * rate.dot(normal)) * time
     }
     #[inline(always)]
     fn twist(spin: DVec3, normal: DVec3) -> f64 {

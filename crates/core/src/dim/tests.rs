@@ -66,3 +66,18 @@ fn components_are_counted() {
     assert!(<DVec2 as Vector>::from_slice(&[1.0]).is_none());
     assert!(<DVec3 as Vector>::from_slice(&[1.0, 2.0]).is_none());
 }
+
+/// A normal that turns steadily was, half a step ago, where it is known to have been, to the second order in the step, in the
+/// plane as in space.
+#[test]
+fn a_normal_was_where_it_came_from() {
+    let missed = |time: f64| {
+        let (now, rate) = (glam::DVec2::X, glam::DVec2::new(5.0, 3.0));
+        let flat = D2::normal_before(now, || rate, time);
+        let space = D3::normal_before(now.extend(0.0), || rate.extend(0.0), time);
+        assert_eq!(space.truncate(), flat);
+        (flat - glam::DVec2::from_angle(-3.0 * time)).length()
+    };
+    let (coarse, fine) = (missed(1e-2), missed(1e-3));
+    assert!(coarse < 1e-3 && fine < 0.0101 * coarse, "{coarse} {fine}");
+}

@@ -21,6 +21,7 @@ mod loads;
 mod memory;
 mod moving_walls;
 mod oblique;
+mod order;
 mod pairs;
 mod periodic;
 mod push;
