@@ -56,7 +56,6 @@ fn every_fault_is_caught_by_the_test_of_its_promise_and_no_other() {
         (Fault::SameLimitTwice, 7),
         (Fault::LimitBelowTheStep, 7),
         (Fault::HardLimitDiffers, 7),
-        (Fault::LimitChangesInSilence, 7),
         (Fault::ForgetsToShow, 8),
         (Fault::ShowsTwice, 8),
         (Fault::ShowsUnasked, 8),

@@ -26,7 +26,6 @@ pub(super) enum Fault {
     SameLimitTwice,
     LimitBelowTheStep,
     HardLimitDiffers,
-    LimitChangesInSilence,
     ForgetsToShow,
     ShowsTwice,
     ShowsUnasked,
@@ -129,7 +128,6 @@ impl Solver for Toy {
             Some(Fault::ZeroLimit) => 0.0,
             Some(Fault::InfiniteLimit) => f64::INFINITY,
             Some(Fault::LimitBelowTheStep) => 1e-3,
-            Some(Fault::LimitChangesInSilence) => 2.0 + self.steps as f64,
             _ => 2.0,
         };
         let limit = StepLimit::at_most("period", dt, "stability");
