@@ -213,7 +213,7 @@ impl Simulation {
         visit("clock", &|clock| {
             clock.put("start and dt", &[self.clock.start, self.clock.dt]);
             clock.put("steps in segment and run", &[self.clock.steps_in_segment, self.clock.step]);
-            self.graph.save_shares(clock);
+            self.graph.save_shares(clock, self.clock.dt);
         });
         self.graph.each_section(visit);
     }

@@ -22,8 +22,9 @@ pub trait Solver: Any + Send {
     fn hard_limits(&self, report: &mut Limits) {
         self.limits(report);
     }
-    /// Whether [`Solver::hard_limits`] should be asked for again while a solver alone takes steps. Not where they follow from its
-    /// setup, nor where [`Solver::advance`] itself refuses a step that has become too long. Among several solvers all are asked.
+    /// Whether a simulation of this solver alone should ask for [`Solver::hard_limits`], at the start of a segment and while
+    /// steps are taken. Not where [`Solver::advance`] itself refuses a step that is too long. Among several solvers all are
+    /// asked.
     fn hard_limits_may_change(&self) -> bool {
         true
     }

@@ -12,7 +12,7 @@ impl Graph {
     pub(super) fn share(&mut self, step: f64) -> Result<(), StepError> {
         if let [alone] = &mut self.nodes[..] {
             alone.dt = step;
-            return self.share_again(step);
+            return if alone.solver.hard_limits_may_change() { self.share_again(step) } else { Ok(()) };
         }
         self.nodes.iter_mut().for_each(|node| node.substeps = 1);
         let limits: Vec<Limits> = (0..self.nodes.len()).map(|k| self.limits_of(k)).collect();
@@ -71,26 +71,26 @@ impl Graph {
         !self.edges.is_empty() || self.nodes.iter().any(|node| node.solver.hard_limits_may_change())
     }
 
-    /// Saves how steps are shared; nothing for a solver alone, which takes every step whole.
-    pub(super) fn save_shares(&self, clock: &mut Section) {
-        if self.nodes.len() > 1 {
+    /// Saves how steps are shared, which depends on the state when limits were last asked for. Nothing where every solver
+    /// takes each step \[s\] of the simulation whole.
+    pub(super) fn save_shares(&self, clock: &mut Section, step: f64) {
+        if self.nodes.iter().any(|node| (node.substeps, node.dt) != (1, step)) {
             let shares: Vec<(u64, f64)> = self.nodes.iter().map(|node| (node.substeps, node.dt)).collect();
             clock.put("steps of solvers", &shares);
         }
     }
 
-    /// Takes up how steps are shared, which depends on the state when limits were last asked for.
+    /// Takes up how steps are shared.
     pub(super) fn restore_shares(&mut self, clock: &Section, step: f64) -> Result<(), SnapshotError> {
-        if let [alone] = &mut self.nodes[..] {
-            alone.dt = step;
-            return Ok(());
-        }
-        let shares: Vec<(u64, f64)> = clock.array_of("steps of solvers", self.nodes.len())?;
+        const ENTRY: &str = "steps of solvers";
+        let is_saved = clock.entries().any(|(name, _)| name == ENTRY);
+        let count = self.nodes.len();
+        let shares = if is_saved { clock.array_of(ENTRY, count)? } else { vec![(1, step); count] };
         if let Some((count, dt)) =
             shares.iter().find(|(count, dt)| *count == 0 || !(dt.is_finite() && *dt >= 0.0))
         {
             let found = format!("{count} steps of {dt} s");
-            return Err(SnapshotError::Damaged { place: "clock/steps of solvers".to_owned(), found });
+            return Err(SnapshotError::Damaged { place: format!("clock/{ENTRY}"), found });
         }
         for (node, share) in self.nodes.iter_mut().zip(shares) {
             (node.substeps, node.dt) = share;
