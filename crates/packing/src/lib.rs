@@ -36,7 +36,7 @@
 //!
 //! # Options
 //!
-//! | choice | what it is | source |
+//! | choice | meaning | source |
 //! |---|---|---|
 //! | [`Grading::Single`] | one size | |
 //! | [`Grading::Beta`] | beta curve by area or volume | \[Kumar2014, eq. 3.53-3.57\] |

@@ -50,7 +50,7 @@
 //!
 //! # Options
 //!
-//! | choice | what it is | source |
+//! | choice | meaning | source |
 //! |---|---|---|
 //! | [`Diagram::new`] | additively weighted, disks of any size | \[Fortune1987, section 4\] |
 //! | [`Diagram::of_points`] | ordinary Voronoi diagram; its dual is a Delaunay triangulation | \[Fortune1987\] |
