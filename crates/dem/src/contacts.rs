@@ -24,6 +24,9 @@ use granular_core::walls::Reaction;
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
 
+/// Makes the law between two bodies from the properties of their pair.
+pub(crate) type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
+
 /// Contacts of a solver, whatever their law.
 pub(crate) trait Pairs<D: Dim>: Send + Sync {
     /// Lists all pairs with surfaces nearer than `skin`; memories move along. `order` gives the
@@ -73,7 +76,7 @@ pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
     laws: Vec<L>,
     /// The law between two materials.
-    between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
+    between: Between<L>,
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
@@ -98,12 +101,7 @@ impl<D: Dim, L: MaterialLaw<D>> Contacts<D, L> {
 }
 
 impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
-    pub(crate) fn new(
-        materials: &Materials,
-        tension: Tension,
-        blocks: Blocks,
-        between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
-    ) -> Self {
+    pub(crate) fn new(materials: &Materials, tension: Tension, blocks: Blocks, between: Between<L>) -> Self {
         let count = blocks.count();
         let mut contacts = Self {
             laws: Vec::new(),

@@ -30,7 +30,7 @@ impl Method for HeatSpec {
         if self.cells < 4 {
             problems.add(format!("solvers.{name}.cells"), self.cells, "4 or more", "");
         }
-        if !(self.diffusivity > 0.0) {
+        if self.diffusivity <= 0.0 {
             problems.add(format!("solvers.{name}.diffusivity"), self.diffusivity, "above 0", "");
         }
         if !problems.0.is_empty() {

@@ -1,7 +1,7 @@
 //! From a scene to a fluid.
 
 use super::carried::Carried;
-use super::member::{Action, Water};
+use super::member::{Action, Stages, Water};
 use super::read::{Fluid, Reader, components};
 use crate::methods::contract::Building;
 use crate::methods::member::Member;
@@ -65,7 +65,7 @@ pub(super) fn early_limits<L: Lattice<Q>, const Q: usize>(
 }
 
 /// What each stage does at its start.
-fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Vec<Vec<Action<D>>> {
+fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Stages<D> {
     let mut stages = Vec::new();
     for (k, stage) in scene.stages.iter().enumerate() {
         let mut list = Vec::new();
@@ -94,7 +94,7 @@ fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Vec<Vec<Action<D>>
 
 /// Adds the lattice, with the paths of obstacles that move coupled to it.
 fn add<L: Lattice<Q>, T: Real, const Q: usize>(
-    (name, fluid, stages): (&str, Fluid<L::Dim>, Vec<Vec<Action<L::Dim>>>),
+    (name, fluid, stages): (&str, Fluid<L::Dim>, Stages<L::Dim>),
     carried: Vec<Carried<L::Dim>>,
     simulation: &mut Building,
     problems: &mut Problems,

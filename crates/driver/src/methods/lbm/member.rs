@@ -18,6 +18,9 @@ pub(super) enum Action<D: Dim> {
     ObstacleSpin(String, [f64; 3]),
 }
 
+/// What happens at the start of each stage, in their order.
+pub(super) type Stages<D> = Vec<Vec<Action<D>>>;
+
 /// Numbers whose last value belongs to the result, by how their names begin.
 const METRICS: [&str; 6] = [
     "largest_speed",
@@ -32,8 +35,7 @@ const METRICS: [&str; 6] = [
 pub(super) struct Water<L: Lattice<Q>, T: Real, const Q: usize> {
     pub(super) name: String,
     pub(super) key: NodeKey<Lbm<L, Q, T>>,
-    /// What happens at the start of each stage, in their order.
-    pub(super) stages: Vec<Vec<Action<L::Dim>>>,
+    pub(super) stages: Stages<L::Dim>,
 }
 
 impl<L: Lattice<Q>, T: Real, const Q: usize> Member for Water<L, T, Q> {
