@@ -23,7 +23,7 @@ proptest! {
         let [v, a, b] = [v, a, b].map(DVec3::from);
         prop_assert!(close(D3::rotated(v, a), DQuat::from_scaled_axis(a) * v));
         let both = D3::rotation_after(a, b);
-        prop_assert!(both.length() < std::f64::consts::PI + 1e-3);
+        prop_assert!(both.length() <= std::f64::consts::PI * (1.0 + 1e-12));
         prop_assert!((D3::rotated(v, both) - D3::rotated(D3::rotated(v, a), b)).length() < 1e-13);
         let flat = D2::rotated(v.truncate(), a.z);
         prop_assert!(close(flat.extend(0.0), D3::rotated(DVec3::new(v.x, v.y, 0.0), DVec3::new(0.0, 0.0, a.z))));
