@@ -76,4 +76,4 @@ mod tests;
 
 pub use fields::CoarseFields;
 pub use grid::CoarseGrid;
-pub use source::{CoarseSource, ForceBranch, Periods, Sizes};
+pub use source::{CoarseSource, ForceBranch, Periods, Sizes, VisitBranches};

@@ -18,7 +18,9 @@
 
 use crate::contact::{Contact, Partner};
 use crate::dem::Dem;
-use granular_core::coarse::{CoarseFields, CoarseGrid, CoarseSource, ForceBranch, Periods, Sizes};
+use granular_core::coarse::{
+    CoarseFields, CoarseGrid, CoarseSource, ForceBranch, Periods, Sizes, VisitBranches,
+};
 use granular_core::{Dim, FieldSink, Shown};
 use std::borrow::Cow;
 
@@ -39,10 +41,7 @@ impl<D: Dim> Dem<D> {
         CoarseFields::<D>::catalogue()
     }
 
-    fn coarse_source<'a>(
-        &'a self,
-        visit_branches: &'a (dyn Fn(&mut dyn FnMut(ForceBranch<D>)) + Sync),
-    ) -> CoarseSource<'a, D> {
+    fn coarse_source<'a>(&'a self, visit_branches: &'a VisitBranches<'a, D>) -> CoarseSource<'a, D> {
         let grains = &self.grains;
         CoarseSource {
             position: &grains.position,

@@ -69,11 +69,14 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn bytes(&self) -> (usize, usize);
 }
 
+/// Makes the law between two materials.
+type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
+
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
     laws: Vec<L>,
     /// The law between two materials.
-    between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
+    between: Between<L>,
     materials: usize,
     blocks: Blocks,
     lists: Vec<BlockList<L::Memory>>,
@@ -98,12 +101,7 @@ impl<D: Dim, L: MaterialLaw<D>> Contacts<D, L> {
 }
 
 impl<D: Dim, L: ContactLaw<D>> Contacts<D, L> {
-    pub(crate) fn new(
-        materials: &Materials,
-        tension: Tension,
-        blocks: Blocks,
-        between: Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>,
-    ) -> Self {
+    pub(crate) fn new(materials: &Materials, tension: Tension, blocks: Blocks, between: Between<L>) -> Self {
         let count = blocks.count();
         let mut contacts = Self {
             laws: Vec::new(),

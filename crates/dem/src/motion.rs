@@ -69,7 +69,7 @@ pub(crate) struct Particulars<'a> {
 
 impl<'a> Particulars<'a> {
     /// Of the grains in a range; nothing where there is nothing particular.
-    pub(crate) fn of<D: Dim>(fixed: &'a [bool], inertia: &'a [f64], range: std::ops::Range<usize>) -> Self {
+    pub(crate) fn of(fixed: &'a [bool], inertia: &'a [f64], range: std::ops::Range<usize>) -> Self {
         Self { fixed: fixed.get(range.clone()).unwrap_or(&[]), inertia: inertia.get(range).unwrap_or(&[]) }
     }
 
@@ -105,7 +105,7 @@ fn close<D: Dim, const PARTICULAR: bool>(
         |block, (position, (velocity, load, middle), (spin, moment, middle_spin), speed)| {
             pairs.collect(block, load, moment);
             let range = blocks.range(block);
-            let particulars = Particulars::of::<D>(fixed, inertia, range.clone());
+            let particulars = Particulars::of(fixed, inertia, range.clone());
             let (mass, radius) = (&masses[range.clone()], &radii[range]);
             let half = 0.5 * dt;
             let mut fastest = 0;

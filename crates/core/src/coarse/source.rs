@@ -55,6 +55,9 @@ pub struct ForceBranch<D: Dim> {
     pub force: D::Vec,
 }
 
+/// Calls back with one force after the other.
+pub type VisitBranches<'a, D> = dyn Fn(&mut dyn FnMut(ForceBranch<D>)) + Sync + 'a;
+
 /// Particles and the forces between them: grains with contacts, or points of a continuum with stresses.
 pub struct CoarseSource<'a, D: Dim> {
     /// Positions \[m\].
@@ -71,7 +74,7 @@ pub struct CoarseSource<'a, D: Dim> {
     /// forces between them.
     pub stress: &'a [SymmetricTensor],
     /// Calls back with every force between particles, or between a particle and a wall, in a fixed order.
-    pub visit_branches: &'a (dyn Fn(&mut dyn FnMut(ForceBranch<D>)) + Sync),
+    pub visit_branches: &'a VisitBranches<'a, D>,
     /// No branch is longer \[m\].
     pub longest_branch: f64,
 }

@@ -101,7 +101,7 @@ pub(crate) fn close_step<D: Dim>(
     blocks.for_each(work, |block, (position, (velocity, load), (spin, moment), sums)| {
         pairs.collect(block, load, moment);
         let range = blocks.range(block);
-        let particulars = Particulars::of::<D>(fixed, inertia, range.clone());
+        let particulars = Particulars::of(fixed, inertia, range.clone());
         let (mass, radius) = (&masses[range.clone()], &radii[range]);
         let mut sum = Sums::<D>::default();
         for (k, &mass) in mass.iter().enumerate() {
