@@ -72,6 +72,9 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
     fn bytes(&self) -> (usize, usize);
 }
 
+/// Makes the law between two materials.
+type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
+
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
     laws: Vec<L>,
