@@ -24,9 +24,6 @@ use granular_core::walls::Reaction;
 use granular_core::{Blocks, Dim, Linear, PerBlock, Section, SnapshotError};
 use multiversion::multiversion;
 
-/// Makes the law between two bodies from the properties of their pair.
-pub(crate) type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
-
 /// Contacts of a solver, whatever their law.
 pub(crate) trait Pairs<D: Dim>: Send + Sync {
     /// Lists all pairs with surfaces nearer than `skin`; memories move along. `order` gives the
@@ -73,7 +70,7 @@ pub(crate) trait Pairs<D: Dim>: Send + Sync {
 }
 
 /// Makes the law between two materials.
-type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
+pub(crate) type Between<L> = Box<dyn Fn(&PairProperties, Tension) -> L + Send + Sync>;
 
 pub(crate) struct Contacts<D: Dim, L: ContactLaw<D>> {
     /// By material of the first times `materials` plus material of the second.
