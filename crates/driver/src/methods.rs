@@ -1,6 +1,6 @@
 //! Methods: what solves a scene.
 //!
-//! A method is one folder here and one line in [the table](table). Outside its folder no file of the driver names its solver
+//! A method is one folder here and one line in the table (`table.rs`). Outside its folder no file of the driver names its solver
 //! crate: the rest of the driver asks a [`Method`] what it uses of a scene, lets it build a solver, and asks the [`Member`]
 //! that comes of it for all that outputs, figures and reports show. `docs/adding-a-solver.md` leads through it.
 
