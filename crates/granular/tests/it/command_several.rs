@@ -104,7 +104,7 @@ fn laws_name_solvers_that_there_are() {
         ),
         ("couplings.0.radius=0", &["`couplings.0.radius` is 0"]),
         ("outputs.0.of=watr", &["`outputs.0.of` is `watr`, which is no solver", "did you mean `water`?"]),
-        ("stages.0.of=stone", &["`stages.0.of` is `stone`"]),
+        ("stages.0.of=\"stone\"", &["`stages.0.of` is `stone`"]),
         ("outputs.1.of=grains", &["`mass_excess`, which nothing shows"]),
         (
             "cell=(periodic: [true, false], size: [\"40 mm\", \"1 m\"])",
