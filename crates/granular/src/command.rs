@@ -429,3 +429,14 @@ fn shown(common: &Common, path: &Path) -> Result<(), Failure> {
     });
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Command;
+    use clap::CommandFactory;
+
+    #[test]
+    fn flags_of_all_verbs_make_sense_to_their_parser() {
+        Command::command().debug_assert();
+    }
+}

@@ -42,6 +42,7 @@ pub(super) enum Solver {
 }
 
 #[derive(Args, Debug)]
+#[group(id = "speed flags")]
 pub(super) struct Speed {
     /// Numbers of disks in a collapsing column.
     #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "3000,13000,100000", value_name = "LIST")]
