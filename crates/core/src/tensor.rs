@@ -29,6 +29,7 @@ impl SymmetricTensor {
     pub const IDENTITY: Self = Self { xx: 1.0, yy: 1.0, zz: 1.0, xy: 0.0, yz: 0.0, xz: 0.0 };
 
     /// Symmetric part of the dyad `a b`.
+    #[inline(always)]
     pub fn dyad(a: DVec3, b: DVec3) -> Self {
         Self {
             xx: a.x * b.x,
@@ -41,16 +42,19 @@ impl SymmetricTensor {
     }
 
     /// Sum of the diagonal.
+    #[inline(always)]
     pub fn trace(self) -> f64 {
         self.xx + self.yy + self.zz
     }
 
     /// The tensor less a third of its trace on the diagonal.
+    #[inline(always)]
     pub fn deviator(self) -> Self {
         self - Self::IDENTITY * (self.trace() / 3.0)
     }
 
     /// Full contraction `a : b`.
+    #[inline(always)]
     pub fn contract(self, b: Self) -> f64 {
         self.xx * b.xx
             + self.yy * b.yy
@@ -61,6 +65,7 @@ impl SymmetricTensor {
 
 impl Add for SymmetricTensor {
     type Output = Self;
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self {
             xx: self.xx + b.xx,
@@ -75,6 +80,7 @@ impl Add for SymmetricTensor {
 
 impl Sub for SymmetricTensor {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         self + b * -1.0
     }
@@ -82,6 +88,7 @@ impl Sub for SymmetricTensor {
 
 impl Mul<f64> for SymmetricTensor {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, s: f64) -> Self {
         Self {
             xx: self.xx * s,
@@ -95,6 +102,7 @@ impl Mul<f64> for SymmetricTensor {
 }
 
 impl AddAssign for SymmetricTensor {
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
     }

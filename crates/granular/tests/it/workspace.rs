@@ -11,6 +11,8 @@ use std::process::Command;
 /// Who may depend on whom: all edges between packages of the workspace.
 const ALLOWED: &[(&str, &str)] = &[
     ("granular-core", ""),
+    ("granular-constitutive", "core"),
+    ("granular-mpm", "core constitutive"),
     ("granular-packing", "core"),
     ("granular-dem", "core"),
     ("granular-lbm", "core"),
@@ -26,6 +28,8 @@ const ALLOWED: &[(&str, &str)] = &[
 /// All other packages that come with one that is used alone, at any depth: `rayon` is more than one.
 const BROUGHT: &[(&str, &str)] = &[
     ("granular-core", "glam rayon"),
+    ("granular-constitutive", "glam rayon"),
+    ("granular-mpm", "glam rayon multiversion granular-constitutive"),
     ("granular-packing", "glam rayon rand_chacha rand_core ppv-lite86 zerocopy"),
     ("granular-dem", "glam rayon multiversion"),
     ("granular-lbm", "glam rayon multiversion bytemuck memmap2 libc"),

@@ -1,0 +1,23 @@
+//! Constitutive laws: the stress at a particle after an increment of strain.
+//!
+//! A law is a value of [`ConstitutiveLaw`]. Stress is a symmetric 3x3 tensor \[Pa\], positive in tension; in plane strain its
+//! component across the plane is kept too. Laws know no solver and no grid.
+//!
+//! ```
+//! use granular_constitutive::{ConstitutiveLaw, Increment, InPlane, LinearElastic};
+//! use granular_core::SymmetricTensor;
+//!
+//! let rubber = LinearElastic::new(1e6, 0.3).unwrap();
+//! let squeezed = Increment::of_strain(SymmetricTensor { yy: -1e-3, ..SymmetricTensor::ZERO });
+//! let after = rubber.respond::<InPlane>(SymmetricTensor::ZERO, &mut [], &squeezed);
+//! // Confined compression: the sides are pressed with nu / (1 - nu) of the axial stress.
+//! assert!((after.stress.xx / after.stress.yy - 0.3 / 0.7).abs() < 1e-12);
+//! ```
+
+mod axes;
+mod elastic;
+mod law;
+
+pub use axes::{Axes, InPlane, InSpace};
+pub use elastic::LinearElastic;
+pub use law::{ConstitutiveLaw, Increment, Kept, Memory, Response};

@@ -1,0 +1,1 @@
+//! Material point method for soils that deform without bound.
