@@ -28,14 +28,28 @@ pub(crate) fn push_of<D: Dim, L: ContactLaw<D>>(load: &ContactLoad<D>, normal: D
     if L::TANGENTIAL { along + D::turn(load.tangential, normal) } else { along }
 }
 
+/// The lever arm of a body at a contact.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm {
+    /// Length in the middle of the step \[m\].
+    pub(crate) length: f64,
+    /// By how much it is shorter for each metre of overlap.
+    pub(crate) shrinks: f64,
+}
+
+impl Arm {
+    /// Of a surface, whose velocities are those at the contact.
+    pub(crate) const NONE: Self = Self { length: 0.0, shrinks: 0.0 };
+}
+
 /// The kinematics of a body with another, each with its lever arm, if they meet within the step.
 ///
 /// `turning` is the rate of the normal at the start of the step \[1/s\].
 #[inline(always)]
 pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     view: &View<'_, D>,
-    (own, own_arm): (&Body<D>, f64),
-    (other, other_arm): (&Body<D>, f64),
+    (own, own_arm): (&Body<D>, Arm),
+    (other, other_arm): (&Body<D>, Arm),
     (normal, turning): (D::Vec, impl FnOnce() -> D::Vec),
     overlap: f64,
 ) -> Kinematics<D> {
@@ -65,14 +79,18 @@ pub(crate) fn kinematics_of<D: Dim, L: ContactLaw<D>>(
     };
     if L::TANGENTIAL {
         if view.predicts {
-            let surface = D::tangential(own.spin * own_arm + other.spin * other_arm, normal);
+            let surface = D::tangential(own.spin * own_arm.length + other.spin * other_arm.length, normal);
             kinematics.slip = D::cross(normal, relative) - surface;
             kinematics.roll = D::tangential(own.spin - other.spin, normal);
         }
         // The velocities are those half a step before the normal. Bodies that turn as one with a
         // component along it would slide on each other by this difference.
         let start_normal = D::normal_before(normal, turning, 0.5 * view.dt);
-        let surface = D::tangential(own.start_spin * own_arm + other.start_spin * other_arm, start_normal);
+        // So are their arms, which were longer by what the bodies have approached.
+        let since = 0.5 * view.dt * kinematics.start_approach;
+        let start_arm = |arm: Arm| arm.length + arm.shrinks * since;
+        let turned = own.start_spin * start_arm(own_arm) + other.start_spin * start_arm(other_arm);
+        let surface = D::tangential(turned, start_normal);
         // Within the tangent plane of now, or the moments on the two bodies would not balance.
         kinematics.start_slip = D::tangential(D::cross(start_normal, start_relative) - surface, normal);
         kinematics.start_roll = D::tangential(own.start_spin - other.start_spin, normal);
@@ -106,15 +124,15 @@ impl<D: Dim> Pair<D> {
         let Self { own, other, .. } = self;
         let distance = self.distance_squared.sqrt();
         let overlap = own.radius + other.radius - distance;
-        let shorter = view.arm_share * overlap;
-        let arms = (own.radius - shorter, other.radius - shorter);
+        let arm_of = |radius: f64| Arm { length: radius - view.arm_share * overlap, shrinks: view.arm_share };
+        let arms = (arm_of(own.radius), arm_of(other.radius));
         let normal = self.arm * (1.0 / distance);
         let turning = || (own.start_velocity - other.start_velocity) * (1.0 / distance);
         let mut kinematics =
             kinematics_of::<D, L>(view, (own, arms.0), (other, arms.1), (normal, turning), overlap);
         kinematics.effective_mass = own.mass * other.mass / (own.mass + other.mass);
         kinematics.effective_radius = own.radius * other.radius / (own.radius + other.radius);
-        (kinematics, arms)
+        (kinematics, (arms.0.length, arms.1.length))
     }
 }
 

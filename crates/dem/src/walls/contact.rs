@@ -1,6 +1,6 @@
 //! Contacts of grains with walls of one part.
 
-use crate::kinematics::{kinematics_of, push_of};
+use crate::kinematics::{Arm, kinematics_of, push_of};
 use crate::law::{ContactLaw, Kinematics};
 use crate::lists::BlockList;
 use crate::pass::Kernel;
@@ -48,7 +48,8 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
     let radius = view.radius[first];
     // A wall does not give way: the contact lies on its surface. A held grain does.
     let given = if ball.is_some() { 1.0 } else { 2.0 };
-    let arm = radius - given * view.arm_share * overlap;
+    let shrinks = given * view.arm_share;
+    let arm = radius - shrinks * overlap;
     // Velocities of the surface are those at the contact: its lever arm is zero.
     let mut other = Body {
         velocity: D::Vec::ZERO,
@@ -69,7 +70,9 @@ pub(crate) fn meet_surface<D: Dim, L: ContactLaw<D>>(
         }
         None => D::turn(other.start_spin, normal),
     };
-    let mut kinematics = kinematics_of::<D, L>(view, (&own, arm), (&other, 0.0), (normal, turning), overlap);
+    let own_arm = (&own, Arm { length: arm, shrinks });
+    let mut kinematics =
+        kinematics_of::<D, L>(view, own_arm, (&other, Arm::NONE), (normal, turning), overlap);
     kinematics.effective_mass = view.mass[first];
     kinematics.effective_radius = ball.map_or(radius, |other| radius * other / (radius + other));
     let reached = L::REACHES && kinematics.gap < view.law_reach;
