@@ -4,12 +4,14 @@
 //! rows of a table that say how far they are from the first.
 
 mod difference;
+mod maps;
 mod source;
 
 use crate::failure::Failure;
 use difference::Difference;
 use granular_io::figure::{Axis, Chart, Panels, Series, Style};
 use granular_io::{csv_row, write_atomically};
+use maps::Maps;
 use serde::Serialize;
 use source::{Curve, Grid, Source};
 use std::fmt;
@@ -38,6 +40,8 @@ pub struct Comparison {
     pub left_out: Vec<String>,
     #[serde(skip)]
     charts: Vec<Chart>,
+    #[serde(skip)]
+    maps: Vec<Maps>,
 }
 
 /// A source of a quantity beside the first source of it.
@@ -71,7 +75,8 @@ pub fn compare(request: &Request) -> Result<Comparison, Failure> {
         return Err(Failure::Io(format!("{reason}; `granular compare A B ...`")));
     }
     source::shorten(&mut sources);
-    let mut comparison = Comparison { rows: Vec::new(), left_out: Vec::new(), charts: Vec::new() };
+    let mut comparison =
+        Comparison { rows: Vec::new(), left_out: Vec::new(), charts: Vec::new(), maps: Vec::new() };
     for key in shared(&sources, &request.columns) {
         comparison.add_curves(&sources, &key);
     }
@@ -141,8 +146,7 @@ impl Comparison {
         let all = || sources.iter().flat_map(|source| source.grids.iter().map(move |grid| (source, grid)));
         for (at, (source, grid)) in all().enumerate() {
             let is_wanted = wanted.is_empty() || wanted.contains(&grid.name);
-            let is_same =
-                |(_, other): &(&Source, &Grid)| other.name == grid.name && other.cells == grid.cells;
+            let is_same = |(_, other): &(&Source, &Grid)| grid.is_like(other);
             let is_known = all().take(at).any(|pair| is_same(&pair));
             let others: Vec<_> = all().skip(at + 1).filter(is_same).collect();
             if !is_wanted || is_known || others.is_empty() {
@@ -161,10 +165,14 @@ impl Comparison {
                 .iter()
                 .map(|(other, field)| row(other, Difference::of_cells(&field.values, &grid.values)));
             self.rows.extend(rows);
+            let fields = std::iter::once((source, grid)).chain(others);
+            let fields = fields.map(|(source, grid)| (source.label.clone(), grid.clone())).collect();
+            self.maps.push(Maps::new(grid.name.clone(), fields));
         }
     }
 
-    /// Writes `compare.csv`, and the figure as `compare.svg` and `compare.png`; returns their paths.
+    /// Writes `compare.csv`, the curves as `compare.svg` and `compare.png`, and each field on cells as `compare_FIELD` and
+    /// `compare_FIELD_difference`; returns their paths.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -177,6 +185,15 @@ impl Comparison {
             let columns = if self.charts.len() > 4 { 3 } else { 2.min(self.charts.len()) };
             let panels = Panels::new("Side by side", columns, self.charts.clone());
             paths.extend(panels.figure().save(&folder.join("compare"))?);
+        }
+        for maps in &self.maps {
+            let stem = format!("compare_{}", maps.quantity);
+            let named = [(maps.overlay(), stem.clone()), (maps.differences(), format!("{stem}_difference"))];
+            for (figure, stem) in named {
+                if let Some(figure) = figure {
+                    paths.extend(figure.save(&folder.join(stem))?);
+                }
+            }
         }
         Ok(paths)
     }

@@ -28,6 +28,7 @@ pub mod scene;
 pub mod scene_file;
 pub mod statistics;
 pub mod sweep;
+mod walls;
 
 pub use effort::Effort;
 

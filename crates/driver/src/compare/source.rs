@@ -6,7 +6,7 @@ use crate::parts;
 use crate::records::RecordedStage;
 use crate::scene::{Scene, Writer};
 use crate::scene_file::SceneText;
-use granular_io::vtk::read_vti;
+use granular_io::vtk::{GridFields, read_vti};
 use granular_io::{Collection, Table, read_table};
 use std::path::Path;
 
@@ -33,8 +33,22 @@ pub(super) struct Curve {
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     pub(super) name: String,
-    pub(super) cells: [usize; 3],
+    /// Where the cells are; its list of fields is empty.
+    pub(super) frame: GridFields,
     pub(super) values: Vec<f64>,
+}
+
+impl Grid {
+    /// Whether both are the same field on the same cells, up to round-off.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64, cell: f64| (a - b).abs() <= 1e-6 * cell;
+        let (one, two) = (&self.frame, &other.frame);
+        let is_same = |k: usize| {
+            let cell = one.spacing[k];
+            near(one.origin[k], two.origin[k], cell) && near(cell, two.spacing[k], cell)
+        };
+        self.name == other.name && one.cells == two.cells && (0..3).all(is_same)
+    }
 }
 
 impl Curve {
@@ -51,7 +65,7 @@ impl Source {
     /// What it holds, for messages.
     pub(super) fn describe(&self) -> String {
         let curves = self.curves.iter().map(|curve| format!("{} over {}", curve.name, curve.over));
-        let grids = self.grids.iter().map(|grid| format!("{} on {:?} cells", grid.name, grid.cells));
+        let grids = self.grids.iter().map(|grid| format!("{} on {:?} cells", grid.name, grid.frame.cells));
         let all: Vec<String> = curves.chain(grids).collect();
         format!("{}: {}", self.label, if all.is_empty() { "nothing".to_owned() } else { all.join(", ") })
     }
@@ -142,10 +156,11 @@ fn last_grid(stem: &Path) -> Result<Vec<Grid>, Failure> {
         return Ok(Vec::new());
     };
     let grid = read_vti(&stem.with_file_name(file))?;
+    let frame = GridFields { fields: Vec::new(), ..grid.clone() };
     let names = grid.fields.iter().map(|(name, ..)| name.clone());
     let field = |name: String| {
         let values = grid.magnitude(&name)?;
-        Some(Grid { name, cells: grid.cells, values })
+        Some(Grid { name, frame: frame.clone(), values })
     };
     Ok(names.filter_map(field).collect())
 }

@@ -17,7 +17,6 @@ pub(crate) mod sheared;
 mod stages;
 mod stiffness;
 mod voronoi;
-mod walls;
 mod whole;
 
 use crate::methods::contract::{Building, Claims, Method};

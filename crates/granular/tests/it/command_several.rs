@@ -85,6 +85,9 @@ fn methods_that_nothing_joins_run_apart_and_are_compared() {
     let words = ["compare", "joined", "apart", "--columns", "vorticity", "--out", "fields", "--json"];
     let found = scratch.granular(&words).expect(0).json();
     assert_eq!(found["rows"][0]["over"], "cells");
+    for file in ["compare_vorticity.png", "compare_vorticity_difference.svg"] {
+        assert!(scratch.path("fields").join(file).is_file(), "{file}");
+    }
     let error = scratch.granular(&["compare", "joined", "apart", "--columns", "hight"]).expect(5);
     error.says(&["no two of them share hight", "apart/water:"]);
     scratch.granular(&["compare", "joined"]).expect(5).says(&["two runs or tables"]);

@@ -1,14 +1,14 @@
 //! From a scene to grains and walls.
 
-use super::boundaries::{self, Surroundings};
+use super::boundaries;
 use super::materials::{NamedMaterials, inlet_materials};
 use super::member::Grains;
-use super::walls::{self, Beside};
 use super::{cell, push, sample, stages, stiffness, whole};
 use crate::methods::contract::Building;
 use crate::methods::member::Member;
 use crate::problems::{Problems, nearest};
 use crate::scene::{Change, FigureSpec, Sample, Scene, Writer};
+use crate::walls::{self, Beside, BuiltWall, Surroundings};
 use granular_core::{Dim, Vector};
 use granular_dem::spec::DemSpec;
 use granular_dem::{Dem, Setup, SetupError, Wall};
@@ -57,13 +57,21 @@ pub(super) fn build<D: Dim>(
     };
     let top = here().map(|grain| grain.position.component(D::UP) + grain.radius).fold(0.0, f64::max);
     let grains_mass = whole.mass::<D>(here(), &materials);
-    let around = Surroundings { scene, materials: &materials, grains_mass, top };
-    let walls = walls::walls::<D>(&scene.walls, beside, &around, problems);
+    let around = Surroundings {
+        scene,
+        knows: &|path, name, problems| materials.find(path, name, problems).is_some(),
+        stiffness: &|name| materials.stiffness(name),
+        mass: grains_mass,
+        top,
+    };
+    let built = walls::walls::<D>(&scene.walls, beside, &around, problems);
+    let openings = built.openings;
+    let walls: Vec<Wall<D>> = built.list.into_iter().filter_map(|wall| of_grains(wall, &materials)).collect();
     let of_inlets = inlet_materials(scene, &materials, problems);
     refuse_traffic_in_a_cell(scene, problems);
     let cell = cell::cell::<D>(scene, sample.as_ref(), problems);
-    let stages = stages::actions::<D>(scene, &walls.openings, &materials, problems);
-    check_wall_names(scene, &walls.list, problems);
+    let stages = stages::actions::<D>(scene, &openings, &materials, problems);
+    check_wall_names(scene, &walls, problems);
     check_spec(name, spec, problems);
     push::check_figures(scene, problems);
     let (Some(gravity), Some(sample), true) = (gravity, sample, problems.0.len() == before) else {
@@ -72,7 +80,7 @@ pub(super) fn build<D: Dim>(
     let setup = Setup {
         materials: materials.list,
         grains: sample.grains,
-        walls: walls.list,
+        walls,
         gravity,
         options: spec.options(needs_ledger(scene)),
     };
@@ -91,6 +99,13 @@ pub(super) fn build<D: Dim>(
         return None;
     }
     Grains::add(name, dem, (stages, column, spec.time_step), simulation, problems)
+}
+
+/// A wall that grains touch.
+fn of_grains<D: Dim>(wall: BuiltWall<D>, materials: &NamedMaterials) -> Option<Wall<D>> {
+    let material = materials.id(&wall.material)?;
+    let BuiltWall { name, shape, motion, waits, .. } = wall;
+    Some(Wall { name, shape, material, open: false, motion, held: waits })
 }
 
 /// Says that a solver refuses its set-up. What is wrong with grains is not the solver's.

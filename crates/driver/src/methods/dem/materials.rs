@@ -34,6 +34,16 @@ impl NamedMaterials {
         named
     }
 
+    /// A material that there is.
+    pub(super) fn id(&self, name: &str) -> Option<MaterialId> {
+        self.ids.get(name).copied().flatten()
+    }
+
+    /// Normal stiffness of a material \[N/m\].
+    pub(super) fn stiffness(&self, name: &str) -> f64 {
+        self.id(name).map_or(0.0, |id| self.list.get(id).normal_stiffness)
+    }
+
     pub(super) fn find(&self, path: &str, name: &str, problems: &mut Problems) -> Option<MaterialId> {
         let found = self.ids.get(name).copied();
         if found.is_none() {
