@@ -15,9 +15,17 @@
 //! ```
 
 mod axes;
+mod drucker_prager;
 mod elastic;
+mod gap;
 mod law;
+pub mod measures;
+mod mohr_coulomb;
+pub mod rotation;
 
-pub use axes::{Axes, InPlane, InSpace};
+pub use axes::{Axes, InPlane, InSpace, Principal};
+pub use drucker_prager::{ConeMatch, DruckerPrager};
 pub use elastic::LinearElastic;
+pub use granular_core;
 pub use law::{ConstitutiveLaw, Increment, Kept, Memory, Response};
+pub use mohr_coulomb::{MohrCoulomb, Strength};
