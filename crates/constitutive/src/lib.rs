@@ -14,6 +14,7 @@
 //! assert!((after.stress.xx / after.stress.yy - 0.3 / 0.7).abs() < 1e-12);
 //! ```
 
+mod any;
 mod axes;
 mod drucker_prager;
 mod elastic;
@@ -22,7 +23,10 @@ mod law;
 pub mod measures;
 mod mohr_coulomb;
 pub mod rotation;
+#[cfg(feature = "serde")]
+pub mod spec;
 
+pub use any::AnyLaw;
 pub use axes::{Axes, InPlane, InSpace, Principal};
 pub use drucker_prager::{ConeMatch, DruckerPrager};
 pub use elastic::LinearElastic;

@@ -12,7 +12,7 @@ mod facets;
 pub mod solid;
 
 pub use facets::Facets;
-pub use solid::{Ball, Block, Extruded, Polygon, ShapeError, SolidShape};
+pub use solid::{Ball, Block, Extruded, Hole, Polygon, ShapeError, SolidShape};
 
 use crate::dim::{Dim, Linear, Vector};
 use crate::setup_error::SetupError;

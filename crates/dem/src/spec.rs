@@ -128,8 +128,9 @@ pub struct MaterialSpec {
     #[serde(default)]
     pub stiffness_ratio: Option<f64>,
     /// Coefficient of restitution of a normal impact, above 0 and at most 1. Between two materials the lower value
-    /// applies.
-    pub restitution: f64,
+    /// applies. Grains and their walls need it.
+    #[serde(default)]
+    pub restitution: Option<f64>,
     /// Tangential over normal damping coefficient, 0 or more.
     #[serde(default = "default_damping_ratio")]
     pub damping_ratio: f64,
@@ -173,7 +174,8 @@ impl From<MaterialSpec> for Material {
             stiffness_ratio: spec.stiffness_ratio.unwrap_or_else(|| {
                 derived.map_or(Self::default().stiffness_ratio, |elastic| elastic.stiffness_ratio())
             }),
-            restitution: spec.restitution,
+            // Whoever reads a scene says when it is missing.
+            restitution: spec.restitution.unwrap_or(1.0),
             damping_ratio: spec.damping_ratio,
             friction: spec.friction,
             rolling_friction: spec.rolling_friction,

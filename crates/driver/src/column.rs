@@ -1,4 +1,10 @@
-//! The size of a sample that is a column.
+//! Samples that are columns: their outline, which grains and a continuum share.
+
+#[cfg(any(feature = "dem", feature = "mpm"))]
+mod outline;
+
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) use outline::{Outline, check_grading, grading_of, volume};
 
 /// Size of a column \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,8 +26,11 @@ pub mod records;
 pub mod run;
 pub mod scene;
 pub mod scene_file;
+#[cfg(any(feature = "lbm", feature = "mpm"))]
+mod solids;
 pub mod statistics;
 pub mod sweep;
+#[cfg(any(feature = "dem", feature = "mpm"))]
 mod walls;
 
 pub use effort::Effort;

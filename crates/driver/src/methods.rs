@@ -13,6 +13,8 @@ mod heat;
 #[cfg(feature = "lbm")]
 mod lbm;
 pub(crate) mod member;
+#[cfg(feature = "mpm")]
+mod mpm;
 pub(crate) mod parts;
 pub(crate) mod specs;
 mod table;
@@ -21,7 +23,7 @@ pub(crate) mod unused;
 pub use contract::{Building, Claims, Method};
 pub use member::{Averages, Member, NoGrid, Notes, Number};
 pub use parts::Part;
-pub use specs::{GrainSpec, MaterialSpec, PairSpec, SolverSpec, left_out, names};
+pub use specs::{ContinuumSpec, GrainSpec, MaterialSpec, PairSpec, SolverSpec, left_out, names};
 
 use table::methods;
 

@@ -10,7 +10,7 @@ use crate::methods::parts::Part;
 use crate::methods::{self, couplings};
 use crate::parts;
 use crate::problems::{Problems, nearest};
-use crate::scene::{Dimension, End, Scene};
+use crate::scene::{Change, Dimension, End, Scene};
 use crate::scene_file::SceneProblem;
 use granular_core::{D2, D3, Dim, Limits, Simulation};
 use std::path::Path;
@@ -166,11 +166,16 @@ fn check_frame(scene: &Scene, problems: &mut Problems) {
                 "",
             );
         }
-        if let Some(of) = stage.of.as_ref().filter(|of| !scene.solvers.contains_key(*of)) {
+        let of_pushes = stage.changes.iter().enumerate().filter_map(|(c, change)| match change {
+            Change::Push { of: Some(of), .. } => Some((format!("stages.{k}.changes.{c}.of"), of)),
+            _ => None,
+        });
+        let named = stage.of.iter().map(|of| (format!("stages.{k}.of"), of)).chain(of_pushes);
+        for (path, of) in named.filter(|(_, of)| !scene.solvers.contains_key(*of)) {
             let known: Vec<&str> = scene.solvers.keys().map(String::as_str).collect();
             let hint = nearest(of, known.iter().copied());
             let value = format!("`{of}`, which is no solver of this scene");
-            problems.add(format!("stages.{k}.of"), value, known.join(", "), hint);
+            problems.add(path, value, known.join(", "), hint);
         }
         if let Some(step) = stage.time_step.filter(|step| step.value() <= 0.0) {
             problems.add(format!("stages.{k}.time_step"), step, "a positive time", "");

@@ -4,7 +4,7 @@
 mod hdf5;
 mod profile;
 mod series;
-mod source;
+pub(crate) mod source;
 mod tracks;
 
 pub(crate) use profile::Line;
@@ -43,7 +43,7 @@ pub(crate) fn of_output(
         std::fs::create_dir_all(parent).map_err(|error| Failure::io(parent.display(), error))?;
     }
     let free_surface = output.write.free_surface();
-    let source = Source::of(output.write.grid(), free_surface, member.clone());
+    let source = Source::of(&output.write, member.clone(), simulation);
     let observer: Box<dyn Observer> = match &output.write {
         Writer::Table { probes, .. } => {
             Box::new(TableObserver::new(path, (member.clone(), simulation), probes, free_surface, fresh)?)

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::methods::{self, couplings};
 use crate::problems::Problems;
-use crate::scene::Scene;
+use crate::scene::{Change, Scene};
 use crate::scene_file::SceneText;
 
 /// A scene of solvers that share a simulation.
@@ -68,6 +68,11 @@ fn alone(text: &SceneText, scene: &Scene, group: &[&str]) -> SceneText {
             out.push(format!("figures.{k}"));
         }
     }
+    for (k, stage) in scene.stages.iter().enumerate() {
+        let elsewhere = |change: &Change| matches!(change, Change::Push { of: Some(of), .. } if !stays(of));
+        let changes = stage.changes.iter().enumerate().filter(|(_, change)| elsewhere(change));
+        out.extend(changes.map(|(c, _)| format!("stages.{k}.changes.{c}")));
+    }
     let laws = scene.couplings.iter().enumerate().filter(|(_, law)| !stays(law.ends().slow.1));
     out.extend(laws.map(|(k, _)| format!("couplings.{k}")));
     out.extend(scene.solvers.keys().filter(|name| !stays(name)).map(|name| format!("solvers.\"{name}\"")));
@@ -80,6 +85,9 @@ fn alone(text: &SceneText, scene: &Scene, group: &[&str]) -> SceneText {
         .filter(|given| !uses(true, given.part) && uses(false, given.part));
     out.extend(unused.map(|given| given.path));
     // Items of a list move up when one before them goes.
+    let number = |part: &str| (part.parse::<usize>().unwrap_or(0), part.to_owned());
+    out.sort_by_key(|path| path.split('.').map(number).collect::<Vec<_>>());
+    out.dedup();
     let mut alone = text.clone();
     out.iter().rev().for_each(|path| alone.remove(path));
     alone

@@ -16,7 +16,7 @@ mod walls;
 pub use outputs::{Chosen, EverySpec, FigureSpec, GridSpec, Output, ReferenceCurve, Writer};
 
 pub use crate::methods::specs::SolverSpec;
-use crate::methods::specs::{GrainSpec, MaterialSpec, PairSpec};
+use crate::methods::specs::{ContinuumSpec, GrainSpec, MaterialSpec, PairSpec};
 use boundaries::{InletSpec, MotionSpec, OutletSpec};
 use cell::{CellChange, CellSpec};
 use coupling::CouplingSpec;
@@ -45,10 +45,13 @@ pub struct Scene {
     /// Materials of grains and walls, by names of your choice.
     #[serde(default)]
     pub materials: BTreeMap<String, MaterialSpec>,
+    /// Laws of continua, by the names of materials: what a sample of this material is when a method takes it as a continuum.
+    #[serde(default)]
+    pub continua: BTreeMap<String, ContinuumSpec>,
     /// Contacts between two materials whose properties are given instead of mixed from both; none by default.
     #[serde(default)]
     pub pairs: Vec<PairSpec>,
-    /// The grains, described apart from the method.
+    /// The grains, or the continuum in their place, described apart from the method.
     #[serde(default)]
     pub sample: Option<Sample>,
     /// The fluid, described apart from the method.
@@ -57,7 +60,7 @@ pub struct Scene {
     /// The periodic cell around the grains; none by default.
     #[serde(default)]
     pub cell: Option<CellSpec>,
-    /// Walls of grains; none by default.
+    /// Walls of grains and continua; none by default.
     #[serde(default)]
     pub walls: Vec<WallSpec>,
     /// Boxes in which grains are inserted during the run; none by default.
@@ -102,7 +105,7 @@ pub enum Dimension {
     Space,
 }
 
-/// The grains.
+/// What is there at the start: grains, or a continuum of the same outline.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Sample {
@@ -115,12 +118,14 @@ pub enum Sample {
         /// Depth along y over the width: needed in space, not allowed in the plane.
         #[serde(default)]
         depth_ratio: Option<f64>,
-        /// Sizes of the grains.
-        grading: GradingSpec,
-        /// Name of the material of the grains.
+        /// Sizes of the grains; a continuum without a count of grains needs none.
+        #[serde(default)]
+        grading: Option<GradingSpec>,
+        /// Name of the material.
         material: String,
-        /// How the grains are placed.
-        packing: PackingSpec,
+        /// How the grains are placed; a continuum needs no packing.
+        #[serde(default)]
+        packing: Option<PackingSpec>,
         /// Random seed of sizes and places: the same seed gives the same sample.
         #[serde(default = "default_seed")]
         seed: u64,
@@ -134,12 +139,14 @@ pub enum Sample {
         /// Whether only its half with y above 0 is made.
         #[serde(default)]
         half: bool,
-        /// Sizes of the grains.
-        grading: GradingSpec,
-        /// Name of the material of the grains.
+        /// Sizes of the grains; a continuum without a count of grains needs none.
+        #[serde(default)]
+        grading: Option<GradingSpec>,
+        /// Name of the material.
         material: String,
-        /// How the grains are placed: Loose or Hexagonal.
-        packing: PackingSpec,
+        /// How the grains are placed: Loose or Hexagonal; a continuum needs no packing.
+        #[serde(default)]
+        packing: Option<PackingSpec>,
         /// Random seed of sizes and places: the same seed gives the same sample.
         #[serde(default = "default_seed")]
         seed: u64,
@@ -160,6 +167,8 @@ pub enum Sample {
     },
     /// Grains one by one.
     Grains(Vec<GrainSpec>),
+    /// Bodies of a continuum by their outlines.
+    Bodies(Vec<BodySpec>),
     /// Grains that a stage of another scene saved; their materials must be materials of this scene.
     File {
         /// The file; its path counts from the folder of the scene.
@@ -179,6 +188,19 @@ pub enum Sample {
 
 fn default_seed() -> u64 {
     1
+}
+
+/// A body of a continuum.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Its outline.
+    pub shape: fluid::ShapeSpec,
+    /// Name of its material.
+    pub material: String,
+    /// Velocity, one component per axis; at rest by default.
+    #[serde(default)]
+    pub velocity: Vec<granular_core::units::Velocity>,
 }
 
 /// Size of a sample.
@@ -545,6 +567,9 @@ pub enum Change {
         /// How it is spread over the height of the grains.
         #[serde(default)]
         profile: PushProfileSpec,
+        /// Name of the solver whose grains it moves; those of all by default.
+        #[serde(default)]
+        of: Option<String>,
     },
     /// Shaking, during this stage only: an oscillating acceleration in addition to gravity, as seen from a shaking
     /// table.

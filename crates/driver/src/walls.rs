@@ -6,7 +6,7 @@ pub(crate) use motion::waits;
 
 use crate::column::{ColumnSize, Round};
 use crate::machine;
-use crate::problems::Problems;
+use crate::problems::{Problems, nearest};
 use crate::scene::{Scene, WallSpec};
 use granular_core::units::Length;
 use granular_core::{Dim, SetupError, Shape, Vector, WallMotion};
@@ -118,6 +118,21 @@ pub(crate) fn walls<D: Dim>(
         motion::set_moving(&path, (&mut built.list, index), spec, around, problems);
     }
     built
+}
+
+/// Whether walls open at stages that there are.
+pub(crate) fn check_openings(scene: &Scene, openings: &[(String, String, String)], problems: &mut Problems) {
+    let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+    for (path, _, stage) in openings.iter().filter(|(.., stage)| !known.contains(&stage.as_str())) {
+        if !known.is_empty() {
+            problems.add(
+                format!("{path}.opens"),
+                format!("`{stage}`, which is not a stage of this scene"),
+                format!("a stage of this scene: {}", known.join(", ")),
+                nearest(stage, known.iter().copied()),
+            );
+        }
+    }
 }
 
 /// A shape under a name; an error says of which wall it is.

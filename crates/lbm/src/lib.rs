@@ -61,7 +61,6 @@ mod collision;
 mod edges;
 mod flow_field;
 mod gauge;
-mod hole;
 #[cfg(feature = "png")]
 mod image;
 mod kernel;
@@ -95,8 +94,7 @@ pub use body_force::BodyForce;
 pub use collision::{OddRate, Operator};
 pub use flow_field::FlowField;
 pub use gauge::Gauge;
-pub use granular_core::shape::{Ball, Block, Extruded, Polygon, ShapeError, SolidShape};
-pub use hole::Hole;
+pub use granular_core::shape::{Ball, Block, Extruded, Hole, Polygon, ShapeError, SolidShape};
 pub use lattice::{D2Q9, D3Q19, Lattice, opposite};
 pub use lbm::{Flow, Lbm};
 pub use links::WallScheme;

@@ -10,7 +10,9 @@ use crate::motion::{Plan, Strains, Stress, Watch, move_particles, strain_particl
 use crate::setup::{ObjectiveRate, Options, ShapeFunctions};
 use crate::shape::{Linear, QuadraticBspline, Shape, UniformGimp};
 use crate::turning::{ByRate, ByRotation, Turning};
-use granular_constitutive::{ConstitutiveLaw, InPlane, InSpace, LinearElastic};
+use granular_constitutive::{
+    AnyLaw, ConstitutiveLaw, DruckerPrager, InPlane, InSpace, LinearElastic, MohrCoulomb,
+};
 use granular_core::{D2, D3, Dim};
 use std::any::{Any, TypeId};
 
@@ -135,4 +137,15 @@ macro_rules! compiled_here {
         }
     )*};
 }
-compiled_here!(LinearElastic);
+compiled_here!(LinearElastic, MohrCoulomb, MohrCoulomb<true>, DruckerPrager);
+
+impl<D: Dim> From<AnyLaw> for BodyLaw<D> {
+    fn from(law: AnyLaw) -> Self {
+        match law {
+            AnyLaw::LinearElastic(law) => law.into(),
+            AnyLaw::MohrCoulomb(law) => law.into(),
+            AnyLaw::MohrCoulombWithCut(law) => law.into(),
+            AnyLaw::DruckerPrager(law) => law.into(),
+        }
+    }
+}

@@ -154,8 +154,8 @@ fn shifted<D: Dim>(block: BlockAt, k: usize, sign: i32) -> BlockAt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::glam::DVec2;
     use granular_core::D2;
+    use granular_core::glam::DVec2;
 
     #[test]
     fn what_tiles_hold_is_collected_once_and_fetched_back() {

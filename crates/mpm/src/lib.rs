@@ -24,6 +24,7 @@
 
 mod batch;
 mod body;
+mod changes;
 mod choice;
 mod grid;
 mod layout;
@@ -39,6 +40,8 @@ mod setup;
 mod shape;
 mod show;
 mod sorting;
+#[cfg(feature = "serde")]
+pub mod spec;
 mod state;
 mod step;
 mod turning;

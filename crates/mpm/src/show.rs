@@ -17,12 +17,12 @@ const NUMBERS: [Entry; 19] = [
     ("kinetic_energy_y", "J", "energy of motion along y"),
     ("kinetic_energy_z", "J", "energy of motion along z"),
     ("elastic_energy", "J", "energy stored by stresses"),
-    ("plastic_loss", "J", "energy lost to plastic strain"),
-    ("viscous_loss", "J", "energy lost to viscosity of the material"),
-    ("friction_loss", "J", "energy lost to friction at walls"),
-    ("stopping_loss", "J", "energy lost where walls stop what moves into them"),
-    ("damping_loss", "J", "energy lost to local damping"),
-    ("pic_loss", "J", "energy lost to PIC in the velocity update"),
+    ("loss_plastic", "J", "energy lost to plastic strain"),
+    ("loss_viscous", "J", "energy lost to viscosity of the material"),
+    ("loss_sliding_at_walls", "J", "energy lost to friction at walls"),
+    ("loss_stopping_at_walls", "J", "energy lost where walls stop what moves into them"),
+    ("loss_local_damping", "J", "energy lost to local damping"),
+    ("loss_pic", "J", "energy lost to PIC in the velocity update"),
     ("energy_residual", "J", "energy that the ledger misses"),
     ("mass", "kg", "sum of masses"),
     ("max_speed", "m/s", "speed of the fastest particle"),
@@ -30,10 +30,12 @@ const NUMBERS: [Entry; 19] = [
     ("lowest", "m", "smallest height of a particle"),
 ];
 
-const FIELDS: [Entry; 10] = [
+const FIELDS: [Entry; 12] = [
     ("id", "1", "stable identifier"),
     ("body", "1", "number of the body"),
+    ("radius", "m", "half the edge of the square or cube that the particle stands for"),
     ("velocity", "m/s", "velocity"),
+    ("speed", "m/s", "length of the velocity"),
     ("mass_of_particle", "kg", "mass"),
     ("volume", "m^3", "volume; area in the plane"),
     ("density", "kg/m^3", "mass per volume"),
@@ -134,12 +136,12 @@ impl<D: Dim> Mpm<D> {
             "kinetic_energy_y" => self.energies().kinetic[1],
             "kinetic_energy_z" => self.energies().kinetic[2],
             "elastic_energy" => self.energies().elastic,
-            "plastic_loss" => self.losses.plastic,
-            "viscous_loss" => self.losses.viscous,
-            "friction_loss" => self.losses.friction,
-            "stopping_loss" => self.losses.stopping,
-            "damping_loss" => self.losses.damping,
-            "pic_loss" => self.losses.pic,
+            "loss_plastic" => self.losses.plastic,
+            "loss_viscous" => self.losses.viscous,
+            "loss_sliding_at_walls" => self.losses.friction,
+            "loss_stopping_at_walls" => self.losses.stopping,
+            "loss_local_damping" => self.losses.damping,
+            "loss_pic" => self.losses.pic,
             "energy_residual" => self.energy_residual().unwrap_or(f64::NAN),
             "mass" => self.mass(),
             "max_speed" => self.particles.velocity.iter().map(|v| v.length()).fold(0.0, f64::max),
@@ -159,7 +161,16 @@ impl<D: Dim> Mpm<D> {
             let numbers = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..self.len()).map(of).collect() };
             match name {
                 "id" => sink.field(name, unit, FieldRef::Index(&particles.id)),
-                "body" => sink.field(name, unit, FieldRef::Index(&self.bodies())),
+                "body" => sink.field(name, unit, FieldRef::Index(&self.body_numbers())),
+                "radius" => {
+                    let root = 1.0 / D::N as f64;
+                    let radius = numbers(&|k| 0.5 * particles.volume[k].powf(root));
+                    sink.field(name, unit, FieldRef::Scalar(&radius));
+                }
+                "speed" => {
+                    let speed = numbers(&|k| particles.velocity[k].length());
+                    sink.field(name, unit, FieldRef::Scalar(&speed));
+                }
                 "velocity" => sink.field(name, unit, D::vector_field(&particles.velocity)),
                 "mass_of_particle" => sink.field(name, unit, FieldRef::Scalar(&particles.mass)),
                 "volume" => sink.field(name, unit, FieldRef::Scalar(&particles.volume)),
@@ -182,7 +193,7 @@ impl<D: Dim> Mpm<D> {
     }
 
     /// Number of the body of each particle.
-    fn bodies(&self) -> Vec<u32> {
+    fn body_numbers(&self) -> Vec<u32> {
         let mut bodies = vec![0; self.len()];
         for (body, group) in self.groups.iter().enumerate() {
             let last = *group.starts.last().unwrap_or(&0) as usize;
@@ -323,7 +334,7 @@ impl<D: Dim> Mpm<D> {
 }
 
 fn wall_force_name(wall: &str, axis: &str) -> String {
-    format!("wall_force_{wall}_{axis}")
+    format!("force_on_{wall}_{axis}")
 }
 
 /// Sine of the mobilised angle of friction, `(s1 - s3) / -(s1 + s3)`; zero without pressure.

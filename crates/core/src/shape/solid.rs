@@ -1,8 +1,11 @@
 //! Bodies: what fills space, such as obstacles in a fluid, and where a ray enters it.
 
+mod hole;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+
+pub use hole::Hole;
 
 use crate::dim::{D2, D3, Dim, Linear, Vector};
 use glam::{DVec2, DVec3};

@@ -57,7 +57,7 @@ impl PairSpec {
         MaterialSpec {
             normal_stiffness: self.normal_stiffness.or(material.normal_stiffness),
             stiffness_ratio: self.stiffness_ratio.or(material.stiffness_ratio),
-            restitution: self.restitution.unwrap_or(material.restitution),
+            restitution: self.restitution.or(material.restitution),
             damping_ratio: self.damping_ratio.unwrap_or(material.damping_ratio),
             friction: self.friction.unwrap_or(material.friction),
             rolling_friction: self.rolling_friction.unwrap_or(material.rolling_friction),

@@ -82,10 +82,27 @@ pub fn running_median(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..points.len()).map(median).collect()
 }
 
+/// Curves of the figure of energies: label, and the columns that are summed. Losses count from the start of the stage; energies are
+/// absolute.
+const CURVES: &[(&str, &[&str])] = &[
+    ("potential", &["potential_energy"]),
+    ("kinetic", &["kinetic_energy", "rotational_energy"]),
+    ("elastic", &["elastic_energy"]),
+    ("lost by sliding between grains", &["loss_sliding"]),
+    ("lost by sliding at walls", &["loss_sliding_at_walls"]),
+    ("lost in dashpots", &["loss_normal_damping", "loss_tangential_damping"]),
+    ("lost by rolling", &["loss_rolling"]),
+    ("lost to plastic strain", &["loss_plastic"]),
+    ("lost to viscosity", &["loss_viscous"]),
+    ("lost in impacts on walls", &["loss_stopping_at_walls"]),
+    ("lost to damping", &["loss_local_damping", "loss_pic"]),
+    ("missing in the balance", &["energy_residual"]),
+];
+
 /// Energies over the energy at the start, as figure 4.14 of \[Kumar2014\] draws them.
 pub(super) fn energies(scene: &Scene, table: &Table, units: Units) -> Chart {
     let time = table.column("time").unwrap_or_default();
-    let column = |name: &str| table.column(name).unwrap_or_else(|| vec![f64::NAN; time.len()]);
+    let column = |name: &str| table.column(name).unwrap_or_else(|| vec![0.0; time.len()]);
     let first = time.iter().position(|&t| t >= units.start - 1e-12).unwrap_or(0);
     let potential = column("potential_energy");
     let scale = potential.get(first).copied().unwrap_or(1.0);
@@ -94,19 +111,14 @@ pub(super) fn energies(scene: &Scene, table: &Table, units: Units) -> Chart {
         Axis::linear(units.time_label()),
         Axis::linear("energy over the potential energy at the start [-]"),
     );
-    // Losses count from the start of the stage; energies are absolute.
-    let curves: [(&str, &[&str], bool); 7] = [
-        ("potential", &["potential_energy"], false),
-        ("kinetic", &["kinetic_energy", "rotational_energy"], false),
-        ("lost by sliding between grains", &["loss_sliding"], true),
-        ("lost by sliding at walls", &["loss_sliding_at_walls"], true),
-        ("lost in dashpots", &["loss_normal_damping", "loss_tangential_damping"], true),
-        ("lost by rolling", &["loss_rolling"], true),
-        ("missing in the balance", &["energy_residual"], true),
-    ];
-    for (label, names, from_start) in curves {
+    for (label, names) in CURVES {
+        // Each method has losses of its own.
+        if names.iter().all(|name| table.column(name).is_none()) {
+            continue;
+        }
+        let from_start = names.iter().any(|name| name.starts_with("loss_") || *name == "energy_residual");
         let mut sum = vec![0.0; time.len()];
-        for name in names {
+        for name in *names {
             sum.iter_mut().zip(column(name)).for_each(|(sum, value)| *sum += value);
         }
         // Grains that roll freely lose nothing by rolling.
@@ -117,7 +129,7 @@ pub(super) fn energies(scene: &Scene, table: &Table, units: Units) -> Chart {
         let points = time.iter().zip(&sum).skip(first);
         let points = points.map(|(t, value)| [(t - units.start) / units.time, (value - offset) / scale]);
         let style = if label.starts_with("missing") { Style::Dashed } else { Style::Line };
-        chart = chart.with(Series::new(label, points.collect(), style));
+        chart = chart.with(Series::new(*label, points.collect(), style));
     }
     chart
 }

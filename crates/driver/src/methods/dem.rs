@@ -41,6 +41,7 @@ impl Claims for DemSpec {
         Part::Saving,
         Part::Quiet,
         Part::Packed,
+        Part::BodyChanges,
         Part::GrainChanges,
     ];
     const STEP_KEY: &'static str = "steps_per_contact";

@@ -68,6 +68,11 @@ pub trait Member: Send + Sync {
     /// Whether the last value of a number belongs to the result of a run.
     fn is_metric(&self, number: &str) -> bool;
 
+    /// Numbers that the figure of energies draws: those that there are, and losses.
+    fn energies(&self) -> &'static [&'static str] {
+        &["potential_energy", "kinetic_energy"]
+    }
+
     /// What the progress of a run says of it: the number that tells soonest whether all is well.
     fn progress(&self, simulation: &Simulation) -> String;
 

@@ -7,6 +7,8 @@ pub enum Part {
     Sample,
     /// `materials`.
     Materials,
+    /// `continua`.
+    Continua,
     /// `pairs`.
     Pairs,
     /// `walls`.
@@ -27,7 +29,9 @@ pub enum Part {
     Quiet,
     /// The end of a stage at a density.
     Packed,
-    /// Changes of grains, walls and cells.
+    /// Changes that whatever moves knows: motion that stops, walls that open and start.
+    BodyChanges,
+    /// Changes of grains, their friction, and cells.
     GrainChanges,
     /// Changes of faces and obstacles of a fluid.
     FluidChanges,

@@ -2,10 +2,14 @@
 
 use super::table::methods;
 use crate::scene_file::SceneProblem;
+#[cfg(feature = "mpm")]
+pub use granular_constitutive::spec::ContinuumSpec;
 #[cfg(feature = "dem")]
 pub use granular_dem::spec::{GrainSpec, MaterialSpec, PairSpec};
 use schemars::JsonSchema;
 use serde::Deserialize;
+#[cfg(not(feature = "mpm"))]
+pub use unread::ContinuumSpec;
 #[cfg(not(feature = "dem"))]
 pub use unread::{GrainSpec, MaterialSpec, PairSpec};
 
@@ -66,15 +70,23 @@ pub(crate) fn explain(problem: SceneProblem) -> SceneProblem {
     }
 }
 
-/// Stand-ins for what only grains read of a scene: anything is taken, and refused as a part that no method uses.
-#[cfg(not(feature = "dem"))]
+/// Stand-ins for what the methods that are off read of a scene: anything is taken, and refused as a part that no method uses.
+#[cfg(not(all(feature = "dem", feature = "mpm")))]
+#[allow(dead_code)]
 mod unread {
     use schemars::JsonSchema;
     use serde::Deserialize;
 
-    /// A material.
+    /// A material; of walls of a continuum only the friction is read.
     #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-    pub struct MaterialSpec {}
+    pub struct MaterialSpec {
+        /// Coefficient of Coulomb friction.
+        pub friction: f64,
+    }
+
+    /// A continuum.
+    #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+    pub struct ContinuumSpec {}
 
     /// A pair of materials.
     #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]

@@ -8,6 +8,8 @@ macro_rules! methods {
             Dem(granular_dem::spec::DemSpec) if feature = "dem";
             /// Lattice Boltzmann method, for a fluid.
             Lbm(granular_lbm::spec::LbmSpec) if feature = "lbm";
+            /// Material point method, for a continuum.
+            Mpm(granular_mpm::spec::MpmSpec) if feature = "mpm";
             /// Heat on a grid: a toy that shows what a method takes.
             Heat(crate::methods::heat::spec::HeatSpec) if test;
         }

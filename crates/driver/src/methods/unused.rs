@@ -29,7 +29,9 @@ fn instead(part: Part, uses: &dyn Fn(Part) -> bool) -> &'static str {
         Part::Quiet | Part::Packed => "For or Steady",
         Part::GrainChanges if uses(Part::FluidChanges) => "FaceVelocity, ObstacleSpin or Gravity",
         Part::FluidChanges if uses(Part::GrainChanges) => "a change of grains, walls or the cell",
-        Part::GrainChanges | Part::FluidChanges => "no change",
+        Part::BodyChanges if uses(Part::FluidChanges) => "FaceVelocity, ObstacleSpin or Gravity",
+        Part::GrainChanges if uses(Part::BodyChanges) => "Gravity, StopMotion, Open, Close, Start or Halt",
+        Part::BodyChanges | Part::GrainChanges | Part::FluidChanges => "no change",
         _ => "nothing here",
     }
 }
@@ -47,6 +49,7 @@ pub(crate) fn given(scene: &Scene) -> Vec<Given> {
     let keys = [
         ("sample", Part::Sample, scene.sample.is_some()),
         ("materials", Part::Materials, !scene.materials.is_empty()),
+        ("continua", Part::Continua, !scene.continua.is_empty()),
         ("pairs", Part::Pairs, !scene.pairs.is_empty()),
         ("walls", Part::Walls, !scene.walls.is_empty()),
         ("inlets", Part::Inlets, !scene.inlets.is_empty()),
@@ -73,13 +76,13 @@ pub(crate) fn given(scene: &Scene) -> Vec<Given> {
             let (part, value) = match change {
                 Change::Gravity(_) => continue,
                 Change::Friction { .. } => (Part::GrainChanges, "Friction"),
-                Change::StopMotion => (Part::GrainChanges, "StopMotion"),
+                Change::StopMotion => (Part::BodyChanges, "StopMotion"),
                 Change::Push { .. } => (Part::GrainChanges, "Push"),
                 Change::Shake { .. } => (Part::GrainChanges, "Shake"),
-                Change::Open(_) => (Part::GrainChanges, "Open"),
-                Change::Close(_) => (Part::GrainChanges, "Close"),
-                Change::Start(_) => (Part::GrainChanges, "Start"),
-                Change::Halt(_) => (Part::GrainChanges, "Halt"),
+                Change::Open(_) => (Part::BodyChanges, "Open"),
+                Change::Close(_) => (Part::BodyChanges, "Close"),
+                Change::Start(_) => (Part::BodyChanges, "Start"),
+                Change::Halt(_) => (Part::BodyChanges, "Halt"),
                 Change::Cell(_) => (Part::GrainChanges, "Cell"),
                 Change::FaceVelocity { .. } => (Part::FluidChanges, "FaceVelocity"),
                 Change::ObstacleSpin { .. } => (Part::FluidChanges, "ObstacleSpin"),

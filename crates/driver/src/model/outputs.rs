@@ -6,6 +6,7 @@ use super::Model;
 use crate::machine::room_for;
 use crate::methods::member::Member;
 use crate::observers::Line;
+use crate::observers::source::place_of;
 use crate::problems::{Problems, nearest, quoted};
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Output, Scene, Writer};
 use files::{Files, Taken, check_path, spelled};
@@ -162,13 +163,27 @@ pub(super) fn check_names(scene: &Scene, model: &Model, problems: &mut Problems)
                 problems.add(path, format!("`{name}`, which no table can hold"), allowed, hint);
             } else if names[..n].contains(name) {
                 problems.add(path, format!("`{name}` again"), "each name once", "");
+            } else if kind == ShownAs::Field && output.write.grid().is_none() {
+                let [first, here] = [&names[..1], &names[n..=n]].map(|names| place_of(names, &shown));
+                if let (Some(first), Some(here)) = (first, here)
+                    && first != here
+                {
+                    let value = format!("`{name}`, which lives at another place than `{}`", names[0]);
+                    problems.add(
+                        path,
+                        value,
+                        "fields of one place",
+                        "write the others in an output of their own",
+                    );
+                }
             }
         }
     }
     check_grids(scene, model, problems);
     check_lines(scene, model, problems);
     check_tracks(scene, model, problems);
-    check_figures(scene, model.column().map_or("front", |column| column.front()), &unknown, problems);
+    let front = model.column().map_or("front", |column| column.front());
+    check_figures(model, (scene, front), &unknown, problems);
 }
 
 /// The solver of which an output is; none when the scene has none of this name.
@@ -280,17 +295,25 @@ fn check_lines(scene: &Scene, model: &Model, problems: &mut Problems) {
 
 /// Whether figures draw from outputs that hold what they need. Outputs with `unknown` names have
 /// been blamed: what seems to lack is perhaps only misspelt.
-fn check_figures(scene: &Scene, front: &'static str, unknown: &[&str], problems: &mut Problems) {
+fn check_figures(
+    model: &Model,
+    (scene, front): (&Scene, &'static str),
+    unknown: &[&str],
+    problems: &mut Problems,
+) {
     for (k, figure) in scene.figures.iter().enumerate() {
         if matches!(figure, FigureSpec::Cells { .. }) && scene.dimension == Dimension::Space {
             let hint = "Flow draws spheres; `local_density` can be its colour";
             problems.add(format!("figures.{k}"), "Cells in space", "Cells in the plane", hint);
         }
-        let need = figure.needs(front);
+        let mut need = figure.needs(front);
         let place = format!("figures.{k}.{}", need.key);
         let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
         let found = of_kind.clone().find(|output| output.write.path() == need.output);
         if let Some(output) = found {
+            if let (FigureSpec::Energies { .. }, Some(member)) = (figure, member_of(output, model)) {
+                need.names = member.energies().to_vec();
+            }
             let lacks = |name: &&str| !output.write.names().iter().any(|other| other == name);
             let lacking: Vec<String> =
                 need.names.iter().copied().filter(lacks).map(|name| format!("\"{name}\"")).collect();

@@ -1,8 +1,8 @@
 //! Where the fields of an output come from: the places of a solver, or a grid over which it is averaged.
 
 use crate::methods::member::{Averages, Member};
-use crate::scene::GridSpec;
-use granular_core::{Location, Simulation};
+use crate::scene::Writer;
+use granular_core::{Location, Shown, Simulation};
 use granular_io::Frame;
 use std::sync::Arc;
 
@@ -15,20 +15,32 @@ pub(super) struct Source {
     member: Arc<dyn Member>,
     /// Cells over which the solver is averaged; without, its own places.
     grid: Option<Box<dyn Averages>>,
+    /// Name of the place of the solver where the fields live, if they are not averaged.
+    place: &'static str,
     /// Voronoi cells larger than this many times the mean are free surface.
     free_surface: f64,
 }
 
+/// The place where the first of some fields lives; none when it is not shown.
+pub(crate) fn place_of(names: &[String], shown: &[Shown]) -> Option<&'static str> {
+    let first = names.first()?;
+    shown.iter().find(|shown| shown.name == *first).map(|shown| shown.place)
+}
+
 impl Source {
     /// Of an output; the check has refused what cannot be.
-    pub(super) fn of(spec: Option<&GridSpec>, free_surface: f64, member: Arc<dyn Member>) -> Self {
-        let grid = spec.and_then(|spec| member.averages(spec).ok());
-        Self { member, grid, free_surface }
+    pub(super) fn of(write: &Writer, member: Arc<dyn Member>, simulation: &Simulation) -> Self {
+        let grid = write.grid().and_then(|spec| member.averages(spec).ok());
+        let place = place_of(write.names(), &member.shown(simulation)).unwrap_or_default();
+        Self { member, grid, place, free_surface: write.free_surface() }
     }
 
     pub(super) fn location<'a>(&self, simulation: &'a Simulation) -> Location<'a> {
         match &self.grid {
-            None => self.member.solver(simulation).location(),
+            None => {
+                let solver = self.member.solver(simulation);
+                solver.place(self.place).unwrap_or_else(|| solver.location())
+            }
             Some(grid) => grid.location(),
         }
     }

@@ -132,7 +132,8 @@ impl FigureSpec {
                 key: "table",
                 writer: "Table",
                 output: table,
-                names: ENERGIES.to_vec(),
+                // And what else the solver says.
+                names: vec!["potential_energy", "kinetic_energy"],
                 stage: Some(stage),
             },
             Self::Flow { fields, color, stage, .. } => Need {
@@ -196,7 +197,7 @@ fn field_of(column: &str) -> &str {
     ["_x", "_y", "_z"].iter().find_map(|end| column.strip_suffix(end)).unwrap_or(column)
 }
 
-/// Columns that the figure of energies draws.
+/// Energies of grains, for the figure of them.
 pub const ENERGIES: &[&str] = &[
     "potential_energy",
     "kinetic_energy",

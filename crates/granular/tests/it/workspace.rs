@@ -20,8 +20,11 @@ const ALLOWED: &[(&str, &str)] = &[
     ("granular-coupling", "core"),
     ("granular-io", "core"),
     ("granular-validation-data", ""),
-    ("granular-driver", "core packing dem lbm tessellate coupling io"),
-    ("granular-studies", "core packing dem lbm tessellate coupling io driver validation-data"),
+    ("granular-driver", "core packing constitutive dem lbm mpm tessellate coupling io"),
+    (
+        "granular-studies",
+        "core packing constitutive dem lbm mpm tessellate coupling io driver validation-data",
+    ),
     ("granular", "core driver studies"),
 ];
 
@@ -44,7 +47,8 @@ const FAMILIES: &[(&str, &str)] = &[
 ];
 
 /// Libraries of methods, which only the folders of methods may name.
-const METHODS: [&str; 3] = ["granular_dem", "granular_lbm", "granular_coupling"];
+const METHODS: [&str; 5] =
+    ["granular_dem", "granular_lbm", "granular_coupling", "granular_mpm", "granular_constitutive"];
 
 /// Lines that a source file may have, with its tests.
 const LONGEST_FILE: usize = 700;

@@ -1,17 +1,17 @@
-//! Bodies that surround the fluid.
+//! Bodies that surround what is inside.
 
-use granular_core::shape::{ShapeError, SolidShape};
-use granular_core::{Dim, Vector};
+use super::{ShapeError, SolidShape};
+use crate::dim::{Dim, Vector};
 
-/// The body that fills all space outside of a shape, whose inside is the fluid: a tank, a pipe (with
-/// [`crate::Extruded`]), or with a second obstacle within it an annulus.
+/// The body that fills all space outside of a shape, whose inside is left free: a tank, a pipe (with
+/// [`Extruded`](super::Extruded)), or with a second obstacle within it an annulus.
 ///
 /// It has no end, so it has no images through periodic faces: the shape lies in the domain, or crosses it along
-/// the axes that are periodic, as a pipe does. Walls that it leaves no fluid beside do nothing.
+/// the axes that are periodic, as a pipe does. Walls of a fluid that lie outside of the hole do nothing.
 ///
 /// ```
 /// use granular_core::{D2, glam::DVec2};
-/// use granular_lbm::{Ball, SolidShape, Hole};
+/// use granular_core::shape::{Ball, Hole, SolidShape};
 ///
 /// let tank = Hole(Ball::<D2> { centre: DVec2::ZERO, radius: 1.0 });
 /// assert!(!tank.contains(DVec2::ZERO) && tank.contains(DVec2::new(1.1, 0.0)));

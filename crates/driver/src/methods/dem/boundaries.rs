@@ -1,6 +1,6 @@
 //! Grains that come and go.
 
-use super::sample::grading_of;
+use crate::column::grading_of;
 use crate::problems::Problems;
 use crate::scene::Scene;
 use crate::scene::boundaries::{InletSpec, OutletSpec};

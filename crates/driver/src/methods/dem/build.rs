@@ -70,7 +70,7 @@ pub(super) fn build<D: Dim>(
     let of_inlets = inlet_materials(scene, &materials, problems);
     refuse_traffic_in_a_cell(scene, problems);
     let cell = cell::cell::<D>(scene, sample.as_ref(), problems);
-    let stages = stages::actions::<D>(scene, &openings, &materials, problems);
+    let stages = stages::actions::<D>((scene, name), &openings, &materials, problems);
     check_wall_names(scene, &walls, problems);
     check_spec(name, spec, problems);
     push::check_figures(scene, problems);

@@ -1,7 +1,8 @@
 //! The periodic cell of a scene: size, sample and control.
 
 use super::materials::NamedMaterials;
-use super::sample::{BuiltSample, grading_of, refuse_many};
+use super::sample::{BuiltSample, refuse_many};
+use crate::column::grading_of;
 use crate::problems::{Problems, nearest};
 use crate::scene::cell::{CellChange, CellSpec};
 use crate::scene::{Change, GradingSpec, Sample, Scene};

@@ -24,6 +24,17 @@ impl NamedMaterials {
                 named.ids.insert(name.clone(), None);
                 continue;
             }
+            if spec.restitution.is_none() {
+                let place = format!("materials.{}.restitution", quoted(name));
+                problems.add(
+                    place,
+                    "missing",
+                    "a number above 0 and at most 1",
+                    "only walls of a continuum need none",
+                );
+                named.ids.insert(name.clone(), None);
+                continue;
+            }
             let added = named.list.add(spec.into()).map_err(|error| {
                 let key = error.what.replace(' ', "_");
                 problems.add(format!("materials.{}.{key}", quoted(name)), error.value, error.allowed, "");

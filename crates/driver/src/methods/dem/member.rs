@@ -11,6 +11,7 @@ use crate::methods::contract::{Building, Claims};
 use crate::methods::member::{Averages, Member, NoGrid, Notes};
 use crate::methods::parts::Part;
 use crate::problems::Problems;
+use crate::scene::names::ENERGIES;
 use crate::scene::{GridSpec, Scene};
 use granular_core::units::Time;
 use granular_core::{Dim, FieldSink, NodeKey, Shown, Simulation, Solver};
@@ -113,6 +114,10 @@ impl<D: Dim> Member for Grains<D> {
 
     fn is_metric(&self, number: &str) -> bool {
         ["front", "height", "largest_overlap", "unconnected", "energy_residual"].contains(&number)
+    }
+
+    fn energies(&self) -> &'static [&'static str] {
+        ENERGIES
     }
 
     fn progress(&self, simulation: &Simulation) -> String {

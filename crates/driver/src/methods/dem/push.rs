@@ -25,7 +25,9 @@ pub(super) fn action<D: Dim>(
     (falls, in_cell): (bool, bool),
     problems: &mut Problems,
 ) -> Option<PushAction> {
-    let Change::Push { direction, speed, energy, energy_per_grain, profile } = change else { return None };
+    let Change::Push { direction, speed, energy, energy_per_grain, profile, .. } = change else {
+        return None;
+    };
     if in_cell {
         let hint = "what goes out at one face of a cell comes in at the other, so that it has no front";
         problems.add(path, "Push", "a scene without a cell", hint);

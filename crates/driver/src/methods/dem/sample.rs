@@ -4,7 +4,7 @@ mod cylinder;
 mod saved;
 
 use super::materials::NamedMaterials;
-use crate::column::ColumnSize;
+use crate::column::{ColumnSize, Outline, check_grading, grading_of, volume};
 use crate::machine;
 use crate::problems::Problems;
 use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
@@ -14,8 +14,6 @@ use granular_dem::{Grain, MaterialId};
 use granular_packing::{Grading, GradingError, Lattice, PackingError, Sides, ballistic, loose_lattice};
 use std::path::Path;
 
-/// Solid fraction that a deposit comes to rest at, to estimate sizes: plane and space.
-const SETTLED: [f64; 2] = [0.815, 0.60];
 /// Part of a ballistic deposit that is taken off so that its surface is level.
 const TAKEN_OFF: f64 = 0.15;
 /// Gap between grains of a loose lattice over the largest diameter.
@@ -60,6 +58,11 @@ pub(crate) fn grains<D: Dim>(
             let grains = grains.into_iter().collect::<Option<Vec<_>>>()?;
             Some(BuiltSample { grains, column: None, cell: None })
         }
+        Sample::Bodies(_) => {
+            let allowed = "grains: Column, Cylinder, Cell, Grains or File";
+            problems.add("sample", "Bodies", allowed, "bodies by their outlines are for a continuum");
+            None
+        }
         Sample::File { .. } => saved::of_file(sample, folder, materials, problems),
     }
 }
@@ -98,53 +101,21 @@ fn grain<D: Dim>(
 
 /// A column before its grains are placed.
 struct Column<'a> {
-    extent: Extent,
-    aspect_ratio: f64,
-    depth_ratio: Option<f64>,
+    outline: Outline<'a>,
     grading: &'a GradingSpec,
     packing: PackingSpec,
-    seed: u64,
 }
 
 impl<'a> Column<'a> {
     fn of<D: Dim>(sample: &'a Sample, problems: &mut Problems) -> Option<Self> {
-        let Sample::Column { extent, aspect_ratio, depth_ratio, grading, packing, seed, .. } = sample else {
-            return None;
-        };
         let before = problems.0.len();
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        if !positive(*aspect_ratio) {
-            problems.add("sample.aspect_ratio", aspect_ratio, "a positive number", "");
-        }
-        match (D::N, depth_ratio) {
-            (2, Some(ratio)) => problems.add("sample.depth_ratio", ratio, "nothing: the scene is plane", ""),
-            (3, None) => problems.add("sample.depth_ratio", "missing", "a positive number", ""),
-            (_, Some(ratio)) if !positive(*ratio) => {
-                problems.add("sample.depth_ratio", ratio, "a positive number", "");
-            }
-            _ => {}
-        }
-        match extent {
-            Extent::Grains(0) => {
-                problems.add("sample.extent", "a column of 0 grains", "at least one grain", "")
-            }
-            Extent::Width(width) if width.value() <= 0.0 => {
-                problems.add("sample.extent", width, "a positive length", "");
-            }
-            _ => {}
-        }
-        if *packing == PackingSpec::Ballistic && D::N == 3 {
+        let outline = Outline::of::<D>(sample, problems);
+        let (grading, packing) = grains_of(sample, problems)?;
+        if packing == PackingSpec::Ballistic && D::N == 3 {
             problems.add("sample.packing", "Ballistic", "Loose or Hexagonal in space", "");
         }
-        check_sizes(*packing, grading, problems);
-        let column = Self {
-            extent: *extent,
-            aspect_ratio: *aspect_ratio,
-            depth_ratio: *depth_ratio,
-            grading,
-            packing: *packing,
-            seed: *seed,
-        };
+        check_sizes(packing, grading, problems);
+        let column = Self { outline: outline?, grading, packing };
         (problems.0.len() == before).then_some(column)
     }
 
@@ -166,35 +137,11 @@ impl<'a> Column<'a> {
     #[allow(clippy::type_complexity)]
     fn place<D: Dim>(&self) -> Result<(Vec<f64>, Vec<D::Vec>, ColumnSize), Refusal> {
         let grading = grading_of(self.grading);
-        let solid = if self.packing == PackingSpec::Hexagonal {
-            Lattice::Hexagonal.density::<D>()
-        } else {
-            SETTLED[D::N - 2]
-        };
-        let depth_ratio = self.depth_ratio.unwrap_or(1.0);
-        // Volume of the column over the width to the power of the dimension.
-        let shape = self.aspect_ratio * if D::N == 3 { depth_ratio } else { 1.0 };
-        let count = match self.extent {
-            Extent::Grains(count) => count as f64,
-            Extent::Width(width) => {
-                let probe = grading.sample::<D>(1000, self.seed)?;
-                let mean = probe.iter().map(|&r| D::ball_volume(r)).sum::<f64>() / probe.len() as f64;
-                (solid * shape * width.value().powi(D::N as i32) / mean).round().max(1.0)
-            }
-        };
-        refuse_many::<D>(count).map_err(|allowed| {
-            let value = format!("a column of {count:.0} grains");
-            Refusal { path: "sample.extent", value, allowed }
-        })?;
-        let count = count as usize;
-        let radii = grading.sample::<D>(count, self.seed)?;
-        let volume: f64 = radii.iter().map(|&radius| D::ball_volume(radius)).sum();
-        let width = match self.extent {
-            Extent::Width(width) => width.value(),
-            Extent::Grains(_) => (volume / (solid * shape)).powf(1.0 / D::N as f64),
-        };
-        let depth = (D::N == 3).then_some(depth_ratio * width);
-        let size = ColumnSize { width, height: self.aspect_ratio * width, depth, round: None };
+        let outline = &self.outline;
+        let count = count_of::<D>(outline, &grading)?;
+        let radii = grading.sample::<D>(count, outline.seed)?;
+        let width = outline.given_width().unwrap_or_else(|| outline.width_for::<D>(volume::<D>(&radii)));
+        let size = outline.size::<D>(width);
         let (radii, positions) = match self.packing {
             PackingSpec::Ballistic => self.level_deposit::<D>(&grading, count, size)?,
             PackingSpec::Hexagonal => {
@@ -206,7 +153,7 @@ impl<'a> Column<'a> {
             }
             PackingSpec::Loose => {
                 let base: Vec<f64> = std::iter::once(size.width).chain(size.depth).collect();
-                let sites = loose_lattice::<D>(&radii, D::Vec::ZERO, &base, LOOSE_GAP, self.seed);
+                let sites = loose_lattice::<D>(&radii, D::Vec::ZERO, &base, LOOSE_GAP, self.outline.seed);
                 (radii, sites?)
             }
         };
@@ -221,8 +168,8 @@ impl<'a> Column<'a> {
         size: ColumnSize,
     ) -> Result<(Vec<f64>, Vec<D::Vec>), Refusal> {
         let more = (count as f64 / (1.0 - TAKEN_OFF)).ceil() as usize;
-        let radii = grading.sample::<D>(more, self.seed)?;
-        let deposit = ballistic(&radii, size.width, Sides::Walls, self.seed)?;
+        let radii = grading.sample::<D>(more, self.outline.seed)?;
+        let deposit = ballistic(&radii, size.width, Sides::Walls, self.outline.seed)?;
         let mut order: Vec<usize> = (0..more).collect();
         let top = |&index: &usize| deposit.positions[index].y + radii[index];
         order.sort_by(|a, b| top(a).total_cmp(&top(b)));
@@ -234,6 +181,42 @@ impl<'a> Column<'a> {
         };
         Ok((order.iter().map(|&index| radii[index]).collect(), order.iter().map(place).collect()))
     }
+}
+
+/// Number of grains of a column or cylinder.
+fn count_of<D: Dim>(outline: &Outline<'_>, grading: &Grading) -> Result<usize, Refusal> {
+    let count = match (outline.extent, outline.given_width()) {
+        (Extent::Width(_), Some(width)) => {
+            let probe = grading.sample::<D>(1000, outline.seed)?;
+            let mean = volume::<D>(&probe) / probe.len() as f64;
+            let solid = outline.solid::<D>() * outline.shape::<D>();
+            (solid * width.powi(D::N as i32) / mean).round().max(1.0)
+        }
+        (Extent::Grains(count), _) => count as f64,
+        (Extent::Width(_), None) => f64::NAN,
+    };
+    refuse_many::<D>(count).map_err(|allowed| {
+        let what = if outline.round.is_some() { "cylinder" } else { "column" };
+        let value = format!("a {what} of {count:.0} grains");
+        Refusal { path: "sample.extent", value, allowed }
+    })?;
+    Ok(count as usize)
+}
+
+/// The sizes and the packing of grains, which other methods need not have.
+fn grains_of<'a>(sample: &'a Sample, problems: &mut Problems) -> Option<(&'a GradingSpec, PackingSpec)> {
+    let (Sample::Column { grading, packing, .. } | Sample::Cylinder { grading, packing, .. }) = sample else {
+        return None;
+    };
+    if grading.is_none() {
+        let allowed = "sizes of the grains, such as Single(\"1 mm\")";
+        problems.add("sample.grading", "missing", allowed, "only a continuum needs none");
+    }
+    if packing.is_none() {
+        let allowed = "Ballistic, Hexagonal or Loose";
+        problems.add("sample.packing", "missing", allowed, "only a continuum needs none");
+    }
+    grading.as_ref().zip(*packing)
 }
 
 /// Refuses more grains than anybody means, or than the memory of this machine holds; says what is allowed.
@@ -249,19 +232,7 @@ fn check_sizes(packing: PackingSpec, grading: &GradingSpec, problems: &mut Probl
     if packing == PackingSpec::Hexagonal && !matches!(grading, GradingSpec::Single(_)) {
         problems.add("sample.packing", "Hexagonal", "a grading of one size: Single(\"1 mm\")", "");
     }
-    if let Err(error) = grading_of(grading).check() {
-        let key = match error.what {
-            what if what.starts_with("smallest") => ".min",
-            what if what.starts_with("largest") => ".max",
-            _ => "",
-        };
-        let key = if matches!(grading, GradingSpec::Single(_)) { "" } else { key };
-        let value = match key {
-            "" => format!("a grading whose {} is {}", error.what, error.value),
-            _ => format!("{} m", error.value),
-        };
-        problems.add(format!("sample.grading{key}"), value, error.allowed, "");
-    }
+    check_grading(grading, problems);
 }
 
 /// Why a column cannot be filled.
@@ -298,13 +269,5 @@ impl From<PackingError> for Refusal {
                 Self { path: "sample", value, allowed: "a wider column or another seed".to_owned() }
             }
         }
-    }
-}
-
-pub(crate) fn grading_of(spec: &GradingSpec) -> Grading {
-    match *spec {
-        GradingSpec::Single(diameter) => Grading::Single { diameter: diameter.value() },
-        GradingSpec::Beta { min, max, a, b } => Grading::Beta { min: min.value(), max: max.value(), a, b },
-        GradingSpec::EqualMass { min, max } => Grading::EqualMass { min: min.value(), max: max.value() },
     }
 }

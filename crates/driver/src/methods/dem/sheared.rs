@@ -63,9 +63,12 @@ struct Packing<D: Dim> {
 
 /// The grains of a scene in a cell of their own, without friction.
 fn cell_scene(scene: &Scene, plan: &Plan, seed: u64, solid_fraction: f64) -> Result<Scene, Failure> {
-    let Some(Sample::Column { grading, material, .. } | Sample::Cell { grading, material, .. }) =
-        &scene.sample
-    else {
+    let graded = match &scene.sample {
+        Some(Sample::Column { grading: Some(grading), material, .. }) => Some((grading, material)),
+        Some(Sample::Cell { grading, material, .. }) => Some((grading, material)),
+        _ => None,
+    };
+    let Some((grading, material)) = graded else {
         let hint = "only a sample with a grading, Column or Cell, can be drawn again";
         return Err(Failure::Scene(vec![SceneProblem::at_path("sample", "other", "Column or Cell", hint)]));
     };

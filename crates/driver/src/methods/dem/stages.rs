@@ -3,7 +3,7 @@
 use super::cell;
 use super::materials::NamedMaterials;
 use super::push::{self, PushAction};
-use crate::problems::{Problems, nearest};
+use crate::problems::Problems;
 use crate::records::PushRecord;
 use crate::scene::{Change, Scene, Stage};
 use granular_core::Dim;
@@ -33,23 +33,12 @@ pub(super) enum Action<D: Dim> {
 
 /// What each stage does at its start.
 pub(super) fn actions<D: Dim>(
-    scene: &Scene,
+    (scene, name): (&Scene, &str),
     openings: &[(String, String, String)],
     materials: &NamedMaterials,
     problems: &mut Problems,
 ) -> Vec<Vec<Action<D>>> {
-    for (path, _, stage) in openings {
-        if !scene.stages.is_empty() && !scene.stages.iter().any(|other| other.name == *stage) {
-            let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
-            let hint = nearest(stage, known.iter().copied());
-            problems.add(
-                format!("{path}.opens"),
-                format!("`{stage}`, which is not a stage of this scene"),
-                format!("a stage of this scene: {}", known.join(", ")),
-                hint,
-            );
-        }
-    }
+    crate::walls::check_openings(scene, openings, problems);
     let mut stages = Vec::new();
     let weighty = |gravity: &[Acceleration]| gravity.iter().any(|value| value.value() != 0.0);
     let mut falls = weighty(&scene.gravity);
@@ -68,6 +57,7 @@ pub(super) fn actions<D: Dim>(
                 falls = weighty(values);
             }
             list.extend(match change {
+                Change::Push { of: Some(of), .. } if of != name => None,
                 Change::Push { .. } => {
                     let push = push::action::<D>(&path, change, (falls, scene.cell.is_some()), problems);
                     push.map(Action::Push)

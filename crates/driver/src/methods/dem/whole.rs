@@ -2,7 +2,7 @@
 //! grains must not follow from an empty sample.
 
 use super::materials::NamedMaterials;
-use super::sample::grading_of;
+use crate::column::grading_of;
 use crate::scene::Scene;
 use crate::scene::boundaries::InletSpec;
 use granular_core::Dim;

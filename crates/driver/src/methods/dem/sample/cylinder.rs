@@ -1,23 +1,20 @@
 //! Grains in a cylinder that stands on the floor.
 
 use super::super::region::Region;
-use super::{BuiltSample, LOOSE_GAP, Refusal, SETTLED, check_sizes, grading_of, refuse_many};
-use crate::column::{ColumnSize, Round};
+use super::{BuiltSample, LOOSE_GAP, Refusal, check_sizes, count_of, grains_of};
+use crate::column::{ColumnSize, Outline, Round, grading_of, volume};
 use crate::problems::Problems;
-use crate::scene::{Extent, GradingSpec, PackingSpec, Sample};
-use core::f64::consts::PI;
+use crate::scene::{GradingSpec, PackingSpec, Sample};
 use granular_core::{Dim, Linear, Vector};
 use granular_dem::{Grain, MaterialId};
 use granular_packing::{Lattice, loose_lattice};
 
 /// A cylinder before its grains are placed.
 struct Cylinder<'a> {
-    extent: Extent,
-    aspect_ratio: f64,
+    outline: Outline<'a>,
     round: Round,
     grading: &'a GradingSpec,
     packing: PackingSpec,
-    seed: u64,
 }
 
 /// The cylinder of a scene, or what is wrong with it.
@@ -26,35 +23,18 @@ pub(super) fn build<D: Dim>(
     material: Option<MaterialId>,
     problems: &mut Problems,
 ) -> Option<BuiltSample<D>> {
-    let Sample::Cylinder { extent, aspect_ratio, half, grading, packing, seed, .. } = sample else {
-        return None;
-    };
     let before = problems.0.len();
-    if D::AXES.len() < 3 {
-        problems.add("sample", "Cylinder", "a scene in space", "in the plane write a Column");
-    }
-    if !(*aspect_ratio > 0.0 && aspect_ratio.is_finite()) {
-        problems.add("sample.aspect_ratio", aspect_ratio, "a positive number", "");
-    }
-    match extent {
-        Extent::Grains(0) => {
-            problems.add("sample.extent", "a cylinder of 0 grains", "at least one grain", "")
-        }
-        Extent::Width(width) if width.value() <= 0.0 => {
-            problems.add("sample.extent", width, "a positive length", "");
-        }
-        _ => {}
-    }
-    if *packing == PackingSpec::Ballistic {
+    let outline = Outline::of::<D>(sample, problems);
+    let (grading, packing) = grains_of(sample, problems)?;
+    if packing == PackingSpec::Ballistic {
         problems.add("sample.packing", "Ballistic", "Loose or Hexagonal in space", "");
     }
-    check_sizes(*packing, grading, problems);
+    check_sizes(packing, grading, problems);
     if problems.0.len() > before {
         return None;
     }
-    let (extent, aspect_ratio, packing, seed) = (*extent, *aspect_ratio, *packing, *seed);
-    let round = if *half { Round::Half } else { Round::Whole };
-    let cylinder = Cylinder { extent, aspect_ratio, round, grading, packing, seed };
+    let outline = outline?;
+    let cylinder = Cylinder { round: outline.round?, outline, grading, packing };
     match cylinder.place::<D>(material?) {
         Ok(built) => Some(built),
         Err(Refusal { path, value, allowed }) => {
@@ -68,34 +48,11 @@ impl Cylinder<'_> {
     fn place<D: Dim>(&self, material: MaterialId) -> Result<BuiltSample<D>, Refusal> {
         let grading = grading_of(self.grading);
         let hexagonal = self.packing == PackingSpec::Hexagonal;
-        let solid = if hexagonal { Lattice::Hexagonal.density::<D>() } else { SETTLED[D::N - 2] };
-        // Solid volume over the cube of the radius.
-        let share = if self.round == Round::Half { 0.5 } else { 1.0 };
-        let shape = solid * PI * self.aspect_ratio * share;
-        let volume = |radii: &[f64]| radii.iter().map(|&radius| D::ball_volume(radius)).sum::<f64>();
-        let count = match self.extent {
-            Extent::Grains(count) => count as f64,
-            Extent::Width(width) => {
-                let probe = grading.sample::<D>(1000, self.seed)?;
-                let mean = volume(&probe) / probe.len() as f64;
-                (shape * (0.5 * width.value()).powi(3) / mean).round().max(1.0)
-            }
-        };
-        refuse_many::<D>(count).map_err(|allowed| {
-            let value = format!("a cylinder of {count:.0} grains");
-            Refusal { path: "sample.extent", value, allowed }
-        })?;
-        let mut radii = grading.sample::<D>(count as usize, self.seed)?;
-        let radius = match self.extent {
-            Extent::Width(width) => 0.5 * width.value(),
-            Extent::Grains(_) => (volume(&radii) / shape).cbrt(),
-        };
-        let size = ColumnSize {
-            width: radius,
-            height: self.aspect_ratio * radius,
-            depth: None,
-            round: Some(self.round),
-        };
+        let outline = &self.outline;
+        let count = count_of::<D>(outline, &grading)?;
+        let mut radii = grading.sample::<D>(count, outline.seed)?;
+        let radius = outline.given_width().unwrap_or_else(|| outline.width_for::<D>(volume::<D>(&radii)));
+        let size = outline.size::<D>(radius);
         let sites =
             if hexagonal { self.lattice::<D>(size, radii[0])? } else { self.loose::<D>(size, &radii)? };
         radii.resize(sites.len(), radii[0]);
@@ -134,7 +91,7 @@ impl Cylinder<'_> {
         loop {
             let balls = vec![largest; count];
             let (low, base) = (self.corner::<D>(size), [2.0 * size.width, depth]);
-            let mut sites = loose_lattice::<D>(&balls, low, &base, LOOSE_GAP, self.seed)?;
+            let mut sites = loose_lattice::<D>(&balls, low, &base, LOOSE_GAP, self.outline.seed)?;
             sites.retain(|&site| self.holds::<D>(size, site, largest));
             if sites.len() >= radii.len() {
                 sites.truncate(radii.len());

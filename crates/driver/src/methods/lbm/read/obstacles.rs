@@ -2,11 +2,11 @@
 
 use super::{Reader, vector_of};
 use crate::scene::fluid::{ObstacleSpec, PathSpec, ShapeSpec, SurfaceSpec};
+use crate::solids::solid;
 use granular_core::units::AngularVelocity;
-use granular_core::{D2, Dim, Linear, Spin, Vector};
+use granular_core::{Dim, Linear, Spin};
 use granular_coupling::{Body, Path};
-use granular_lbm::{Ball, Block, Hole, Obstacle, Polygon, Reference, SolidShape, WallScheme};
-use std::sync::Arc;
+use granular_lbm::{Obstacle, Reference, WallScheme};
 
 impl Reader<'_> {
     pub(super) fn obstacle<D: Dim>(
@@ -24,7 +24,7 @@ impl Reader<'_> {
                 "",
             );
         }
-        let shape = self.shape::<D>(&format!("{path}.shape"), &spec.shape)?;
+        let shape = solid::<D>(&format!("{path}.shape"), &spec.shape, self.problems)?;
         let spin = self.spin::<D>(&format!("{path}.spin"), &spec.spin)?;
         let body = match &spec.path {
             Some(way) => Some(self.body(&path, way, &spec.shape, spin)?),
@@ -54,44 +54,6 @@ impl Reader<'_> {
             reference,
         };
         Some((obstacle, body))
-    }
-
-    fn shape<D: Dim>(&mut self, path: &str, spec: &ShapeSpec) -> Option<Arc<dyn SolidShape<D>>> {
-        match spec {
-            ShapeSpec::Ball { centre, radius } => {
-                let centre = self.problems.vector::<D, _>(&format!("{path}.centre"), centre);
-                let radius = radius.value();
-                if radius <= 0.0 {
-                    self.problems.add(format!("{path}.radius"), format!("{radius} m"), "above 0", "");
-                    return None;
-                }
-                Some(Arc::new(Ball { centre: centre?, radius }))
-            }
-            ShapeSpec::Block { low, high } => {
-                let low = self.problems.vector::<D, _>(&format!("{path}.low"), low);
-                let high = self.problems.vector::<D, _>(&format!("{path}.high"), high);
-                let (low, high): (D::Vec, D::Vec) = (low?, high?);
-                if (0..D::N).any(|axis| low.component(axis) >= high.component(axis)) {
-                    let allowed = "above low along every axis";
-                    self.problems.add(format!("{path}.high"), "not above low", allowed, "");
-                    return None;
-                }
-                Some(Arc::new(Block { low, high }))
-            }
-            ShapeSpec::Polygon(corners) => {
-                let corner = |(k, corner): (usize, &Vec<_>)| {
-                    self.problems.vector::<D2, _>(&format!("{path}.Polygon.{k}"), corner)
-                };
-                let corners: Vec<_> = corners.iter().enumerate().map(corner).collect::<Option<_>>()?;
-                if corners.len() < 3 {
-                    let value = format!("a Polygon of {} corners", corners.len());
-                    self.problems.add(path, value, "three corners or more", "");
-                    return None;
-                }
-                Some(Arc::new(Polygon { corners }))
-            }
-            ShapeSpec::Hole(inner) => Some(Arc::new(Hole(self.shape::<D>(&format!("{path}.Hole"), inner)?))),
-        }
     }
 
     pub(in crate::methods::lbm) fn spin<D: Dim>(
