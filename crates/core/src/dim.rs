@@ -59,6 +59,8 @@ pub trait Linear:
 pub trait Vector: Linear {
     /// The vector with this length along axis `axis`.
     fn along(axis: usize, length: f64) -> Self;
+    /// The vector with these components.
+    fn from_fn(component: impl FnMut(usize) -> f64) -> Self;
     /// The vector with this length along every axis.
     fn splat(length: f64) -> Self;
     /// Component along axis `axis`.
@@ -220,11 +222,21 @@ macro_rules! implement_vector {
         }
 
         impl Vector for $vector {
+            #[inline(always)]
             fn along(axis: usize, length: f64) -> Self {
                 let mut vector = Self::ZERO;
                 vector[axis] = length;
                 vector
             }
+            #[inline(always)]
+            fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
+                let mut components = [0.0; $n];
+                for (axis, value) in components.iter_mut().enumerate() {
+                    *value = component(axis);
+                }
+                Self::from_array(components)
+            }
+            #[inline(always)]
             fn splat(length: f64) -> Self {
                 <$vector>::splat(length)
             }

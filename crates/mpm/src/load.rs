@@ -1,0 +1,74 @@
+//! What particles of a batch give to the nodes.
+
+use crate::batch::BATCH;
+use crate::layout::Node;
+use granular_core::{Dim, Vector};
+use multiversion::multiversion;
+
+/// Particles that give their mass and momentum to nodes, and the force of their stress if it is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Givers<'a, D: Dim> {
+    pub(crate) position: &'a [D::Vec],
+    pub(crate) velocity: &'a [D::Vec],
+    pub(crate) mass: &'a [f64],
+    pub(crate) volume: &'a [f64],
+    /// Components that are kept; the others are empty.
+    pub(crate) stress: [&'a [f64]; 6],
+    /// Empty unless shape functions have a width.
+    pub(crate) width: &'a [f64],
+}
+
+impl<D: Dim> Givers<'_, D> {
+    /// Some of them.
+    #[inline(always)]
+    pub(crate) fn range(&self, from: usize, to: usize) -> Self {
+        Self {
+            position: &self.position[from..to],
+            velocity: &self.velocity[from..to],
+            mass: &self.mass[from..to],
+            volume: &self.volume[from..to],
+            stress: self.stress.map(|component| component.get(from..to).unwrap_or(&[])),
+            width: self.width.get(from..to).unwrap_or(&[]),
+        }
+    }
+}
+
+/// Lays out what particles give: mass and momentum in proportion to the values of shape functions, and with a number of cells per
+/// metre the force `-V s` in proportion to their derivatives by places in cells.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>, force: Option<f64>) {
+    let count = givers.mass.len().min(BATCH);
+    let (mass, velocity, volume) =
+        (&givers.mass[..count], &givers.velocity[..count], &givers.volume[..count]);
+    for k in 0..count {
+        let mut row = Node::ZERO;
+        row.0[0] = mass[k];
+        for axis in 0..D::N {
+            row.0[1 + axis] = mass[k] * velocity[k].component(axis);
+        }
+        rows[0][k] = row;
+    }
+    let Some(per_cell) = force else {
+        for row in &mut rows[1..=D::N] {
+            row[..count].fill(Node::ZERO);
+        }
+        return;
+    };
+    let [xx, yy, zz, xy, yz, xz] = givers.stress;
+    let (xx, yy, xy) = (&xx[..count], &yy[..count], &xy[..count]);
+    if D::N == 2 {
+        for k in 0..count {
+            let scale = -volume[k] * per_cell;
+            rows[1][k] = Node([0.0, 0.0, 0.0, scale * xx[k], scale * xy[k], 0.0, 0.0, 0.0]);
+            rows[2][k] = Node([0.0, 0.0, 0.0, scale * xy[k], scale * yy[k], 0.0, 0.0, 0.0]);
+        }
+        return;
+    }
+    let (zz, yz, xz) = (&zz[..count], &yz[..count], &xz[..count]);
+    for k in 0..count {
+        let scale = -volume[k] * per_cell;
+        rows[1][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xx[k], scale * xy[k], scale * xz[k], 0.0]);
+        rows[2][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xy[k], scale * yy[k], scale * yz[k], 0.0]);
+        rows[3][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xz[k], scale * yz[k], scale * zz[k], 0.0]);
+    }
+}

@@ -1,0 +1,314 @@
+//! A step, stage by stage.
+
+use crate::batch::{BATCH, Batch};
+use crate::body::Pass;
+use crate::layout::{LONGEST_TRAVEL, Node, block_cells};
+use crate::motion::{Plan, Watch};
+use crate::mpm::Mpm;
+use crate::nodes::{Touch, keep_out, meet};
+use crate::particles::{Changing, Cut, Parts};
+use crate::setup::Scheme;
+use crate::wall::Wall;
+use granular_core::{Dim, Linear, PerBlock, StepError, Vector};
+
+/// Mass below which a node counts as empty, over that of the heaviest particle: its momentum and force are left out with it.
+const LEAST_MASS: f64 = 1e-12;
+
+/// What nodes do with what particles gave them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    /// Forces act: the velocity after the step, and what it changed by.
+    Accelerate,
+    /// The velocity as it is, as the first or second vector.
+    Velocity(usize),
+}
+
+impl<D: Dim> Mpm<D> {
+    pub(crate) fn take_steps(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
+        for _ in 0..steps {
+            self.check_stability(dt)?;
+            self.one_step(dt)?;
+        }
+        if steps > 0 {
+            self.moving.place(self.clock.time());
+        }
+        Ok(())
+    }
+
+    fn one_step(&mut self, dt: f64) -> Result<(), StepError> {
+        self.moving.place_in_step(self.clock.time(), dt);
+        self.touches.find(&self.grid, &self.walls, &self.moving);
+        let ledger = self.options.ledger;
+        let pic_share = self.options.velocity_update.pic_share(dt);
+        let plan = Plan { dt, pic_share, ledger, ..Plan::default() };
+        let watch = match self.options.scheme {
+            Scheme::StressLast => self.stress_last(&plan),
+            Scheme::StressFirst => self.stress_first(&plan),
+            Scheme::ModifiedStressLast => self.modified_stress_last(&plan),
+        };
+        self.push_walls(dt);
+        self.clock.step();
+        self.steps += 1;
+        self.look(dt, watch)
+    }
+
+    fn stress_last(&mut self, plan: &Plan) -> Watch {
+        self.give(true);
+        self.answer(plan.dt, Answer::Accelerate);
+        self.take(&Plan { velocity: true, position: true, strain: Some(0), ..*plan })
+    }
+
+    fn stress_first(&mut self, plan: &Plan) -> Watch {
+        self.give(false);
+        self.answer(plan.dt, Answer::Velocity(0));
+        let strained = self.take(&Plan { strain: Some(0), ..*plan });
+        self.give(true);
+        self.answer(plan.dt, Answer::Accelerate);
+        strained.join(self.take(&Plan { velocity: true, position: true, ..*plan }))
+    }
+
+    fn modified_stress_last(&mut self, plan: &Plan) -> Watch {
+        self.give(true);
+        self.answer(plan.dt, Answer::Accelerate);
+        let moved = self.take(&Plan { velocity: true, ..*plan });
+        self.give(false);
+        self.answer(plan.dt, Answer::Velocity(1));
+        moved.join(self.take(&Plan { position: true, strain: Some(1), ..*plan }))
+    }
+
+    /// Particles give mass and momentum to tiles, and the force of their stresses.
+    fn give(&mut self, force: bool) {
+        let Self { grid, groups, particles, tiles, kernels, .. } = self;
+        let (blocks, per_cell) = (grid.tile_blocks(), 1.0 / grid.lattice.cell);
+        let force = force.then_some(per_cell);
+        tiles.resize(grid.tile_nodes(), Node::ZERO);
+        for (k, group) in groups.iter().enumerate() {
+            blocks.for_each(&mut tiles[..], |home, tile| {
+                if k == 0 {
+                    tile.fill(Node::ZERO);
+                }
+                let range = group.starts[home] as usize..group.starts[home + 1] as usize;
+                if range.is_empty() {
+                    return;
+                }
+                let (all, corner) = (particles.givers(), grid.corner(home));
+                let mut batch = Batch::new();
+                for from in range.clone().step_by(BATCH) {
+                    let givers = all.range(from, (from + BATCH).min(range.end));
+                    (kernels.load)(&mut batch.rows, &givers, force);
+                    let places = (givers.position, givers.width);
+                    (kernels.give)(&mut batch, grid.tile_shape(), &corner, places, tile);
+                }
+            });
+        }
+    }
+
+    /// Nodes collect what tiles hold, and find how they move.
+    fn answer(&mut self, dt: f64, answer: Answer) {
+        let Self { grid, tiles, touches, walls, gravity, options, heaviest, damped, .. } = self;
+        let rule = NodeRule::<D> {
+            dt,
+            gravity: *gravity,
+            local_damping: options.local_damping,
+            least_mass: LEAST_MASS * *heaviest,
+            walls,
+            ledger: options.ledger,
+        };
+        let (mut sums, mut motion) = (std::mem::take(&mut grid.sums), std::mem::take(&mut grid.motion));
+        let blocks = grid.node_blocks();
+        damped.resize(blocks.count(), 0.0);
+        let touching = Cut::new(&touches.starts, &mut touches.list);
+        let work = (&mut sums[..], &mut motion[..], touching, PerBlock(&mut damped[..]));
+        blocks.for_each(work, |block, (sums, motion, touches, damped)| {
+            grid.collect(block, tiles, sums);
+            match answer {
+                Answer::Accelerate => damped.0[0] = rule.accelerate(sums, motion, touches.items),
+                Answer::Velocity(vector) => rule.velocity(sums, motion, touches.items, vector),
+            }
+        });
+        (grid.sums, grid.motion) = (sums, motion);
+        if answer == Answer::Accelerate && options.ledger {
+            self.losses.damping += self.damped.iter().sum::<f64>();
+        }
+    }
+
+    /// Particles take what they change by.
+    fn take(&mut self, plan: &Plan) -> Watch {
+        let Self { grid, groups, particles, tiles, kernels, watches, .. } = self;
+        let mut whole = Watch::default();
+        for group in groups {
+            watches.resize(grid.homes().len(), Watch::default());
+            let starts = &group.starts[..];
+            let range = starts[0] as usize..starts[starts.len() - 1] as usize;
+            let width = particles.width.get(range.clone()).unwrap_or(&[]);
+            let stress = particles.stress.each_mut().map(|s| s.get_mut(range.clone()).unwrap_or(&mut []));
+            let changing = Changing {
+                position: &mut particles.position[range.clone()],
+                velocity: &mut particles.velocity[range.clone()],
+                volume: &mut particles.volume[range.clone()],
+                stress,
+            };
+            group.body.pass(Pass {
+                plan,
+                kernels,
+                grid,
+                starts,
+                parts: Parts::of(starts, changing),
+                mass: &particles.mass[range],
+                width,
+                density: group.density,
+                tiles,
+                watches,
+            });
+            let of_group = watches.iter().copied().fold(Watch::default(), Watch::join);
+            if plan.strain.is_some() {
+                group.loosest = f64::from_bits(of_group.loosest);
+            }
+            whole = whole.join(of_group);
+        }
+        whole
+    }
+
+    /// Sums how nodes pushed walls.
+    fn push_walls(&mut self, dt: f64) {
+        self.wall_forces.fill(D::Vec::ZERO);
+        let mut work = 0.0;
+        for touch in &self.touches.list {
+            self.wall_forces[touch.wall as usize] -= touch.impulse * (1.0 / dt);
+            if self.options.ledger {
+                self.losses.friction += touch.lost[0];
+                self.losses.stopping += touch.lost[1];
+                work += touch.impulse.dot(touch.velocity);
+            }
+        }
+        if !self.moving.is_empty() {
+            for (reaction, &force) in self.moving.reactions.iter_mut().zip(&self.wall_forces) {
+                (reaction.force, reaction.power) = (force, 0.0);
+            }
+            self.moving.work += work;
+            self.moving.take_reactions(dt, false);
+        }
+    }
+
+    /// The one place where what is not finite is looked for. Sorts particles when one may have come to the edge of its tile.
+    fn look(&mut self, dt: f64, watch: Watch) -> Result<(), StepError> {
+        if !watch.is_sound() {
+            return Err(self.unsound());
+        }
+        let [pic, plastic, viscous] = watch.lost;
+        self.losses.pic += pic;
+        self.losses.plastic += plastic;
+        self.losses.viscous += viscous;
+        self.fastest = f64::from_bits(watch.fastest).sqrt();
+        self.travel += self.fastest * dt;
+        if self.travel > LONGEST_TRAVEL * self.grid.lattice.cell {
+            self.sort()?;
+        }
+        Ok(())
+    }
+
+    fn unsound(&self) -> StepError {
+        let (id, quantity) = self.particles.unsound().unwrap_or((0, "speed"));
+        if quantity == "volume" {
+            let index = self.particles.id.iter().position(|&other| other == id).unwrap_or(0);
+            return StepError::TooStiff {
+                what: format!("the volume of particle {id} in m^{}", D::N),
+                value: self.particles.volume[index],
+                allowed: f64::MIN_POSITIVE,
+                hint: "it was turned inside out within a step: take shorter steps or larger cells".to_owned(),
+            };
+        }
+        StepError::NotFinite { solver: "mpm", quantity, id: u64::from(id), step: self.steps }
+    }
+}
+
+/// How nodes move.
+struct NodeRule<'a, D: Dim> {
+    dt: f64,
+    gravity: D::Vec,
+    local_damping: f64,
+    least_mass: f64,
+    walls: &'a [Wall<D>],
+    ledger: bool,
+}
+
+impl<D: Dim> NodeRule<'_, D> {
+    /// Forces act, then walls. Returns what local damping took.
+    fn accelerate(&self, sums: &[Node], motion: &mut [Node], touches: &mut [Touch<D>]) -> f64 {
+        let mut damped = 0.0;
+        for touch in &mut *touches {
+            touch.rest();
+        }
+        let mut touching = Touching { from: 0 };
+        for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
+            let touches = touching.of(node, touches);
+            let mass = sum.0[0];
+            if mass <= self.least_mass {
+                *motion = Node::ZERO;
+                continue;
+            }
+            let per_mass = 1.0 / mass;
+            let before = D::Vec::from_fn(|axis| sum.0[1 + axis] * per_mass);
+            let mut force = D::Vec::from_fn(|axis| sum.0[1 + D::N + axis] * per_mass) + self.gravity;
+            if self.local_damping > 0.0 {
+                let resisting = D::Vec::from_fn(|axis| {
+                    -self.local_damping * force.component(axis).abs() * sign(before.component(axis))
+                });
+                force += resisting;
+                if self.ledger {
+                    damped -= mass * self.dt * resisting.dot(before + force * (0.5 * self.dt));
+                }
+            }
+            let mut after = before + force * self.dt;
+            if !touches.is_empty() {
+                after = meet(touches, self.walls, mass, after);
+            }
+            for axis in 0..D::N {
+                motion.0[axis] = after.component(axis);
+                motion.0[D::N + axis] = (after - before).component(axis);
+            }
+        }
+        damped
+    }
+
+    /// The velocity as it is, out of walls.
+    fn velocity(&self, sums: &[Node], motion: &mut [Node], touches: &[Touch<D>], vector: usize) {
+        let mut touching = Touching { from: 0 };
+        for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
+            let range = touching.range(node, touches);
+            let mass = sum.0[0];
+            let mut now = D::Vec::ZERO;
+            if mass > self.least_mass {
+                let per_mass = 1.0 / mass;
+                now = D::Vec::from_fn(|axis| sum.0[1 + axis] * per_mass);
+                now = keep_out(&touches[range], self.walls, now);
+            }
+            for axis in 0..D::N {
+                motion.0[vector * D::N + axis] = now.component(axis);
+            }
+        }
+    }
+}
+
+/// Walks along the touches of a block, node by node.
+struct Touching {
+    from: usize,
+}
+
+impl Touching {
+    fn range<D: Dim>(&mut self, node: usize, touches: &[Touch<D>]) -> std::ops::Range<usize> {
+        let from = self.from;
+        self.from += touches[from..].iter().take_while(|touch| touch.node as usize == node).count();
+        from..self.from
+    }
+
+    fn of<'a, D: Dim>(&mut self, node: usize, touches: &'a mut [Touch<D>]) -> &'a mut [Touch<D>] {
+        let range = self.range(node, touches);
+        &mut touches[range]
+    }
+}
+
+/// The sign of a number; zero for zero.
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}

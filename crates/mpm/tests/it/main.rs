@@ -1,0 +1,10 @@
+//! Tests of the material point method as a whole.
+
+use granular_core::testing::CountingAllocator;
+
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator::new();
+
+mod balance;
+mod contract;
+mod sample;
