@@ -153,7 +153,7 @@ impl Simulation {
     /// When `dt` is not a positive finite number, is beyond a limit that must not be exceeded, or solvers cannot share it.
     pub fn begin_segment(&mut self, dt: f64) -> Result<(), StepError> {
         check_step(dt)?;
-        self.graph.share(dt)?;
+        self.graph.share(dt, self.clock.step > 0)?;
         self.clock = Clock { start: self.clock.time(), dt, steps_in_segment: 0, step: self.clock.step };
         // Solvers may have been changed before.
         self.graph.publish();

@@ -182,14 +182,18 @@ pub(crate) fn strain_particles<D: Dim, T: Turning>(
             to[k] = value;
         }
         let spin = [0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)];
-        let turned = T::turned::<D>(stress_at::<D>(stress, k), spin);
+        let before = stress_at::<D>(stress, k);
+        let turned = T::turned::<D>(before, spin);
         put_stress::<D>(stress, k, turned);
-        let stretch = (1.0 + xx) * ((1.0 + yy) * (1.0 + zz) - yz * zy) - xy * (yx * (1.0 + zz) - yz * zx)
-            + xz * (yx * zy - (1.0 + yy) * zx);
+        // exp(tr) to third order: the strain that the law sees. The determinant of 1 + dt L would let what only turns grow.
+        let dilation = xx + yy + zz;
+        let stretch = 1.0 + dilation + 0.5 * dilation * dilation;
         volume[k] *= stretch;
         let ratio = volume[k] * density / mass[k];
         strains.volume_ratio[k] = ratio;
-        loosest = loosest.max(ratio.to_bits());
+        // Material that carries nothing has separated: it has no waves until it is as dense as it was.
+        let carries = before.xx != 0.0 || before.yy != 0.0 || before.zz != 0.0;
+        loosest = loosest.max(if carries || !(ratio > 0.0) { ratio } else { 1.0 }.to_bits());
     }
     watch.loosest = loosest;
 }

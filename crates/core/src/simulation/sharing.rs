@@ -9,10 +9,19 @@ use crate::solver::{Limits, StepError, StepLimit, StepRule};
 impl Graph {
     /// Divides a step \[s\] of the simulation among its solvers at the start of a segment. One alone takes it whole, and so
     /// do the slow solvers of a single group; of several groups each has its own long step, a whole part of that step.
-    pub(super) fn share(&mut self, step: f64) -> Result<(), StepError> {
+    /// In a simulation that `has_begun`, one alone whose limit has fallen below the step since takes several steps within it.
+    pub(super) fn share(&mut self, step: f64, has_begun: bool) -> Result<(), StepError> {
         if let [alone] = &mut self.nodes[..] {
-            alone.dt = step;
-            return if alone.solver.hard_limits_may_change() { self.share_again(step) } else { Ok(()) };
+            (alone.substeps, alone.dt) = (1, step);
+            if !alone.solver.hard_limits_may_change() {
+                return Ok(());
+            }
+            let limits = self.hard_limits_of(0);
+            return if has_begun {
+                self.share_alone(step, &limits)
+            } else {
+                self.nodes[0].check_allowed(step, &limits)
+            };
         }
         self.nodes.iter_mut().for_each(|node| node.substeps = 1);
         let limits: Vec<Limits> = (0..self.nodes.len()).map(|k| self.limits_of(k)).collect();
@@ -23,10 +32,21 @@ impl Graph {
     /// steps take more of them than before, none takes fewer.
     pub(super) fn share_again(&mut self, step: f64) -> Result<(), StepError> {
         let limits: Vec<Limits> = (0..self.nodes.len()).map(|k| self.hard_limits_of(k)).collect();
-        match &self.nodes[..] {
-            [alone] => alone.check_allowed(step, &limits[0]),
+        match &limits[..] {
+            [alone] => self.share_alone(step, alone),
             _ => self.share_by(step, &limits),
         }
+    }
+
+    fn share_alone(&mut self, step: f64, limits: &Limits) -> Result<(), StepError> {
+        let alone = &mut self.nodes[0];
+        if exactly(limits).is_some()
+            || alone.dt <= limits.largest_allowed().map_or(f64::INFINITY, |limit| limit.dt)
+        {
+            return alone.check_allowed(alone.dt, limits);
+        }
+        (alone.substeps, alone.dt) = alone.divide(step, limits, alone.substeps)?;
+        Ok(())
     }
 
     fn share_by(&mut self, step: f64, limits: &[Limits]) -> Result<(), StepError> {

@@ -210,18 +210,34 @@ fn alone(rule: StepRule) -> Simulation {
 }
 
 #[test]
-fn a_segment_whose_step_has_become_too_long_stops_and_says_whose_limit_it_is() {
+fn a_solver_alone_takes_more_steps_once_its_limit_is_below_the_step() {
     let mut simulation = alone(StepRule::AtMost);
     let error = simulation.begin_segment(0.011).unwrap_err().to_string();
     assert!(error.contains("`grains` allows at most 1e-2 s"), "{error}");
     simulation.begin_segment(0.009).unwrap();
-    let error = simulation.run(30.0, &mut [], &AtomicBool::new(false)).unwrap_err();
-    // The limit is below the step from 1.11 s on; it is asked for after 100 and 200 steps.
-    assert_eq!(simulation.clock().step(), 200);
-    let RunError::Step(StepError::Step { dt, why }) = error else { panic!("{error}") };
-    assert_eq!(dt, 0.009);
-    assert!(why.contains("`grains`") && why.contains("endurance") && why.contains("after 1.8 s"), "{why}");
-    // The same for the slow end of a coupling.
+    simulation.advance(2000).unwrap();
+    // The limit is below the step from 1.11 s on and below its half from 12.2 s on; it is asked for after every 100 steps.
+    let third = 0.009 / 3.0;
+    let tiring = |simulation: &Simulation| {
+        simulation.get::<Tiring>(simulation.find("grains").expect("it is alone")).taken.clone()
+    };
+    assert_eq!(tiring(&simulation), [(0.009, 200), (0.0045, 2400), (third, 1800)]);
+    // A later segment begins with as many as it needs by now, and so does one that is taken up again.
+    let mut other = alone(StepRule::AtMost);
+    other.begin_segment(0.009).unwrap();
+    other.restore(&simulation.save()).unwrap();
+    for simulation in [&mut simulation, &mut other] {
+        simulation.advance(100).unwrap();
+        simulation.begin_segment(0.009).unwrap();
+        simulation.advance(1).unwrap();
+    }
+    assert_eq!(tiring(&simulation).last(), Some(&(third, 2103)));
+    assert_eq!(tiring(&other).last(), Some(&(third, 303)));
+}
+
+#[test]
+fn a_segment_whose_step_has_become_too_long_stops_and_says_whose_limit_it_is() {
+    // The slow end of a coupling cannot take more than its partners see.
     let (mut simulation, _) = {
         let mut simulation = alone(StepRule::AtMost);
         let grains = simulation.find::<Tiring>("grains").unwrap();
