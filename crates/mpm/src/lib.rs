@@ -31,6 +31,7 @@ mod layout;
 mod ledger;
 mod limits;
 mod load;
+mod main_mass;
 mod motion;
 mod mpm;
 mod nodes;

@@ -8,9 +8,14 @@ use std::borrow::Cow;
 
 type Entry = (&'static str, &'static str, &'static str);
 
-const NUMBERS: [Entry; 19] = [
-    ("front", "m", "largest x of a particle"),
-    ("height", "m", "largest height of a particle"),
+const NUMBERS: [Entry; 20] = [
+    (
+        "front",
+        "m",
+        "farthest point along x of the main mass: of the largest set of cells with particles that touch",
+    ),
+    ("height", "m", "highest point of the main mass"),
+    ("farthest", "m", "largest x of a particle"),
     ("potential_energy", "J", "energy in the field of gravity"),
     ("kinetic_energy", "J", "energy of motion"),
     ("kinetic_energy_x", "J", "energy of motion along x"),
@@ -127,8 +132,9 @@ impl<D: Dim> Mpm<D> {
             sign * along.fold(f64::NEG_INFINITY, f64::max)
         };
         match name {
-            "front" => farthest(0, 1.0),
-            "height" => farthest(D::UP, 1.0),
+            "front" => self.front_and_height()[0],
+            "height" => self.front_and_height()[1],
+            "farthest" => farthest(0, 1.0),
             "lowest" => farthest(D::UP, -1.0),
             "potential_energy" => self.energies().potential,
             "kinetic_energy" => self.energies().translational(),

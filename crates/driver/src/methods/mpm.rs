@@ -5,6 +5,8 @@ mod materials;
 mod member;
 mod sample;
 mod stages;
+#[cfg(test)]
+mod tests;
 
 use crate::methods::contract::{Building, Claims, Method};
 use crate::methods::member::Member;

@@ -59,6 +59,7 @@ pub(super) fn bodies<D: Dim>(
             let outline = outline?;
             let size = outline.size::<D>(width_of::<D>(&outline, problems)?);
             let (law, density) = continuum?;
+            check_cell(name, spec, size.width.min(size.height), problems)?;
             let particles = column::<D>(size, edge, problems)?;
             Some(BuiltSample { bodies: vec![BuiltBody { law, density, particles }], column: Some(size) })
         }
@@ -92,6 +93,16 @@ fn edge<D: Dim>(name: &str, spec: &MpmSpec, problems: &mut Problems) -> Option<f
         problems.add(format!("solvers.{name}.particles_per_cell"), spec.particles_per_cell, allowed, "");
     }
     Some(cell / along? as f64)
+}
+
+/// Whether a cell is smaller than the sample \[m\].
+fn check_cell(name: &str, spec: &MpmSpec, sample: f64, problems: &mut Problems) -> Option<()> {
+    if spec.cell.value() <= sample {
+        return Some(());
+    }
+    let allowed = format!("smaller than the sample, which is {sample:.4e} m across");
+    problems.add(format!("solvers.{name}.cell"), spec.cell, allowed, "ten cells across resolve a shear band");
+    None
 }
 
 /// The law and the density of a material, or what is wrong with them.
@@ -223,7 +234,9 @@ fn one<D: Dim>(
         |at: D::Vec, round: fn(f64) -> f64| D::Vec::from_fn(|k| round(at.component(k) / edge) * edge);
     let (low, high) = (snapped(low, |x| (x + 1e-6).floor()), snapped(high, |x| (x - 1e-6).ceil()));
     room::<D>(&format!("{path}.shape"), (low, high), edge, problems)?;
-    let particles = Particle::filling_part(low, high, edge, |at| shape.contains(at));
+    // What lies on a face that two bodies share belongs to one of them, whatever round-off says.
+    let nudge = D::Vec::from_fn(|axis| edge * [1e-7, 1.3e-7, 1.7e-7][axis]);
+    let particles = Particle::filling_part(low, high, edge, |at| shape.contains(at + nudge));
     if particles.is_empty() {
         let value = format!("a body in which no particle fits: they are {edge:.3e} m apart");
         problems.add(format!("{path}.shape"), value, "a larger body, or smaller cells", "");
