@@ -1,0 +1,158 @@
+//! The strain for which a law answers with the stresses that are prescribed.
+
+use super::{COMPONENTS, Control, ElementError};
+
+/// A component that does not reach its stress.
+#[derive(Debug)]
+pub(super) struct Unreached {
+    component: usize,
+    wanted: f64,
+    found: f64,
+}
+
+impl Unreached {
+    pub(super) fn at(self, leg: usize, increment: usize) -> ElementError {
+        let Self { component, wanted, found } = self;
+        if !found.is_finite() {
+            return ElementError::NotFinite { leg, increment };
+        }
+        ElementError::Unreached { leg, increment, component: COMPONENTS[component], wanted, found }
+    }
+}
+
+/// Share of the size of the stress to which a prescribed stress is met.
+const TOLERANCE: f64 = 1e-13;
+/// Share of the increment by which strains are varied.
+const VARIATION: f64 = 1e-4;
+const ITERATIONS: usize = 200;
+
+/// The components whose stress is prescribed, and how far the answer is off.
+struct Search<'a, F: Fn([f64; 6]) -> [f64; 6]> {
+    answer: F,
+    free: Vec<usize>,
+    targets: &'a [f64; 6],
+}
+
+impl<F: Fn([f64; 6]) -> [f64; 6]> Search<'_, F> {
+    fn misses(&self, strain: [f64; 6]) -> ([f64; 6], [f64; 6]) {
+        let stress = (self.answer)(strain);
+        let mut misses = [0.0; 6];
+        for (miss, &component) in misses.iter_mut().zip(&self.free) {
+            *miss = stress[component] - self.targets[component];
+        }
+        (stress, misses)
+    }
+
+    /// Changes of the misses with each free strain, over the change of strain.
+    fn slopes(&self, strain: [f64; 6], misses: [f64; 6]) -> [[f64; 6]; 6] {
+        let size = strain.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        let step = (VARIATION * size).max(1e-12);
+        let mut slopes = [[0.0; 6]; 6];
+        for (slope, &component) in slopes.iter_mut().zip(&self.free) {
+            let mut varied = strain;
+            varied[component] += step;
+            let actual = varied[component] - strain[component];
+            let (_, others) = self.misses(varied);
+            *slope = std::array::from_fn(|i| (others[i] - misses[i]) / actual);
+        }
+        slopes
+    }
+}
+
+fn size_of(misses: &[f64; 6]) -> f64 {
+    misses.iter().map(|miss| miss * miss).sum::<f64>().sqrt()
+}
+
+/// The increment of strain that meets all targets, by damped least squares (Levenberg and Marquardt): at the strength the answer
+/// may not depend on all strains, and Newton's method has no unique step.
+pub(super) fn strain_for(
+    answer: impl Fn([f64; 6]) -> [f64; 6],
+    controls: &[Control; 6],
+    targets: &[f64; 6],
+    start: [f64; 6],
+) -> Result<[f64; 6], Unreached> {
+    let free: Vec<usize> =
+        (0..6).filter(|&component| matches!(controls[component], Control::Stress(_))).collect();
+    let mut strain = *targets;
+    for &component in &free {
+        strain[component] = start[component];
+    }
+    let search = Search { answer, free, targets };
+    let (mut stress, mut misses) = search.misses(strain);
+    if let Some(component) = (0..6).find(|&component| !stress[component].is_finite()) {
+        return Err(Unreached { component, wanted: targets[component], found: stress[component] });
+    }
+    let mut damping = 1e-12;
+    let mut best = size_of(&misses);
+    for _ in 0..ITERATIONS {
+        let scale = stress.iter().chain(targets).fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        if best <= TOLERANCE * scale {
+            return Ok(strain);
+        }
+        let slopes = search.slopes(strain, misses);
+        let trial = moved(&search.free, strain, &slopes, &misses, damping);
+        let (trial_stress, trial_misses) = search.misses(trial);
+        let size = size_of(&trial_misses);
+        if size < best {
+            (strain, stress, misses, best) = (trial, trial_stress, trial_misses, size);
+            damping = (damping * 0.1).max(1e-14);
+        } else if best <= 100.0 * TOLERANCE * scale {
+            // Round-off of the law: no step leads nearer.
+            return Ok(strain);
+        } else if damping > 1e6 {
+            break;
+        } else {
+            damping = (damping * 10.0).max(1e-8);
+        }
+    }
+    let farthest = |a: &usize, b: &usize| misses[*a].abs().total_cmp(&misses[*b].abs());
+    let worst = (0..search.free.len()).max_by(farthest).unwrap_or(0);
+    let component = search.free.get(worst).copied().unwrap_or(0);
+    Err(Unreached { component, wanted: targets[component], found: stress[component] })
+}
+
+/// The strain after a step of damped least squares.
+fn moved(
+    free: &[usize],
+    strain: [f64; 6],
+    slopes: &[[f64; 6]; 6],
+    misses: &[f64; 6],
+    damping: f64,
+) -> [f64; 6] {
+    let count = free.len();
+    let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let mut matrix = [[0.0; 7]; 6];
+    let largest = (0..count).map(|i| dot(&slopes[i], &slopes[i])).fold(0.0, f64::max);
+    for i in 0..count {
+        for j in 0..count {
+            matrix[i][j] = dot(&slopes[i], &slopes[j]);
+        }
+        matrix[i][i] += damping * largest + f64::MIN_POSITIVE;
+        matrix[i][6] = -dot(&slopes[i], misses);
+    }
+    let step = eliminated(matrix, count);
+    let mut moved = strain;
+    for (&component, change) in free.iter().zip(step) {
+        moved[component] += change;
+    }
+    moved
+}
+
+/// Solution of a small symmetric positive system; its right side is column 6.
+fn eliminated(mut matrix: [[f64; 7]; 6], count: usize) -> [f64; 6] {
+    for column in 0..count {
+        for row in column + 1..count {
+            let factor = matrix[row][column] / matrix[column][column];
+            let pivot = matrix[column];
+            for (part, above) in matrix[row].iter_mut().zip(pivot).skip(column) {
+                *part -= factor * above;
+            }
+        }
+    }
+    let mut solution = [0.0; 6];
+    for row in (0..count).rev() {
+        let known: f64 = (row + 1..count).map(|column| matrix[row][column] * solution[column]).sum();
+        solution[row] = (matrix[row][6] - known) / matrix[row][row];
+    }
+    solution
+}
