@@ -25,6 +25,7 @@ mod law;
 pub mod measures;
 mod mohr_coulomb;
 mod mu_i;
+mod norsand;
 pub mod rotation;
 #[cfg(feature = "serde")]
 pub mod spec;
@@ -38,3 +39,4 @@ pub use granular_core;
 pub use law::{ConstitutiveLaw, Increment, Kept, Memory, Response};
 pub use mohr_coulomb::{MohrCoulomb, Strength};
 pub use mu_i::{Grains, LinearFriction, MuI, RateFriction, SaturatingFriction};
+pub use norsand::{NorSand, NorSandConstants, NorSandState, PressureElastic};

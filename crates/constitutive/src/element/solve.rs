@@ -63,6 +63,27 @@ fn size_of(misses: &[f64; 6]) -> f64 {
     misses.iter().map(|miss| miss * miss).sum::<f64>().sqrt()
 }
 
+/// Changes the slopes so that they explain the last step (Broyden): along it they are then right, also where the law has a kink.
+fn correct(
+    slopes: &mut [[f64; 6]; 6],
+    free: &[usize],
+    [from, to]: [[f64; 6]; 2],
+    [before, after]: [[f64; 6]; 2],
+) {
+    let step: Vec<f64> = free.iter().map(|&component| to[component] - from[component]).collect();
+    let square: f64 = step.iter().map(|part| part * part).sum();
+    if square == 0.0 {
+        return;
+    }
+    for i in 0..free.len() {
+        let told: f64 = step.iter().zip(slopes.iter()).map(|(part, slope)| part * slope[i]).sum();
+        let unexplained = (after[i] - before[i] - told) / square;
+        for (slope, part) in slopes.iter_mut().zip(&step) {
+            slope[i] += unexplained * part;
+        }
+    }
+}
+
 /// The increment of strain that meets all targets, by damped least squares (Levenberg and Marquardt): at the strength the answer
 /// may not depend on all strains, and Newton's method has no unique step.
 pub(super) fn strain_for(
@@ -84,16 +105,21 @@ pub(super) fn strain_for(
     }
     let mut damping = 1e-12;
     let mut best = size_of(&misses);
+    let mut slopes = None;
     for _ in 0..ITERATIONS {
         let scale = stress.iter().chain(targets).fold(0.0, |largest: f64, part| largest.max(part.abs()));
         if best <= TOLERANCE * scale {
             return Ok(strain);
         }
-        let slopes = search.slopes(strain, misses);
-        let trial = moved(&search.free, strain, &slopes, &misses, damping);
+        let are_new = slopes.is_none();
+        let mut at = slopes.take().unwrap_or_else(|| search.slopes(strain, misses));
+        let trial = moved(&search.free, strain, &at, &misses, damping);
         let (trial_stress, trial_misses) = search.misses(trial);
+        correct(&mut at, &search.free, [strain, trial], [misses, trial_misses]);
         let size = size_of(&trial_misses);
         if size < best {
+            // Slow progress asks for new slopes.
+            slopes = (size < 0.5 * best).then_some(at);
             (strain, stress, misses, best) = (trial, trial_stress, trial_misses, size);
             damping = (damping * 0.1).max(1e-14);
         } else if best <= 100.0 * TOLERANCE * scale {
@@ -101,7 +127,7 @@ pub(super) fn strain_for(
             return Ok(strain);
         } else if damping > 1e6 {
             break;
-        } else {
+        } else if are_new {
             damping = (damping * 10.0).max(1e-8);
         }
     }
