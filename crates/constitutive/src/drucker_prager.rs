@@ -150,7 +150,8 @@ impl ConstitutiveLaw for DruckerPrager {
         let change =
             deviator * (scale - 1.0) + SymmetricTensor::IDENTITY * ((after_trace - trace) * (1.0 / 3.0));
         let yields = excess > 0.0;
-        let returned = trial + change;
+        let tip = SymmetricTensor::IDENTITY * (after_trace * (1.0 / 3.0));
+        let returned = crate::mohr_coulomb::select(at_apex, tip, trial + change);
         let (lost_shear, lost_trace) = (shear - after_shear, trace - after_trace);
         let (strain_shear, strain_trace) =
             (lost_shear * (1.0 / self.elastic.shear()), lost_trace * (1.0 / (3.0 * self.elastic.bulk())));

@@ -30,7 +30,7 @@ pub mod rotation;
 #[cfg(feature = "serde")]
 pub mod spec;
 
-pub use any::AnyLaw;
+pub use any::{AnyLaw, LawVisitor};
 pub use axes::{Axes, InPlane, InSpace, Principal};
 pub use drucker_prager::{ConeMatch, DruckerPrager};
 pub use elastic::LinearElastic;

@@ -332,10 +332,11 @@ impl ConstitutiveLaw for NorSand {
             memory[GAP] = gap;
             let to_come = strain.trace() * (1.0 - done);
             let void_ratio = self.void_ratio(increment.volume_ratio / (1.0 + to_come));
+            elastic_strain += acts;
             if gap > 0.0 {
                 continue;
             }
-            let (after, lost) = self.step::<A>(elastic_strain + acts, memory, void_ratio);
+            let (after, lost) = self.step::<A>(elastic_strain, memory, void_ratio);
             elastic_strain = after;
             plastic_work += lost;
         }

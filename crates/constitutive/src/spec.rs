@@ -1,8 +1,10 @@
 //! What a scene says of a continuum (feature `serde`).
 
-use crate::{AnyLaw, ConeMatch, DruckerPrager, LinearElastic, MohrCoulomb, Strength};
-use granular_core::SetupError;
-use granular_core::units::{Angle, Density, Pressure};
+mod convert;
+#[cfg(test)]
+mod tests;
+
+use granular_core::units::{Angle, Density, Length, Pressure, Time, Velocity, Viscosity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -23,14 +25,14 @@ pub struct ContinuumSpec {
 pub enum LawSpec {
     /// Linear elasticity in rate form.
     LinearElastic {
-        /// Young's modulus.
+        /// Young's modulus, above 0.
         young_modulus: Pressure,
         /// Poisson's ratio, above -1 and below 0.5.
         poisson_ratio: f64,
     },
-    /// Elastic up to the strength of Mohr-Coulomb, then perfectly plastic.
+    /// Elastic up to the strength of Mohr-Coulomb, then perfectly plastic: dry or cohesive soil in slow flow.
     MohrCoulomb {
-        /// Young's modulus.
+        /// Young's modulus, above 0.
         young_modulus: Pressure,
         /// Poisson's ratio, above -1 and below 0.5.
         poisson_ratio: f64,
@@ -48,7 +50,7 @@ pub enum LawSpec {
     },
     /// Elastic up to a cone, then perfectly plastic.
     DruckerPrager {
-        /// Young's modulus.
+        /// Young's modulus, above 0.
         young_modulus: Pressure,
         /// Poisson's ratio, above -1 and below 0.5.
         poisson_ratio: f64,
@@ -63,6 +65,75 @@ pub enum LawSpec {
         /// Where the cone has the strength of Mohr-Coulomb.
         #[serde(default)]
         cone: ConeSpec,
+    },
+    /// Grains whose friction grows with the rate.
+    MuI {
+        /// Young's modulus, above 0.
+        young_modulus: Pressure,
+        /// Poisson's ratio, above -1 and below 0.5.
+        poisson_ratio: f64,
+        /// How friction grows with the number I.
+        friction: FrictionSpec,
+        /// What the rate is compared with.
+        grains: GrainsSpec,
+    },
+    /// Sand whose strength follows from its density and pressure.
+    NorSand {
+        /// Shear modulus at the reference pressure, above 0.
+        shear_modulus: Pressure,
+        /// Pressure at which the shear modulus is given; 100 kPa by default.
+        #[serde(default = "default_reference_pressure")]
+        reference_pressure: Pressure,
+        /// Poisson's ratio, above -1 and below 0.5.
+        poisson_ratio: f64,
+        /// Exponent of pressure in the moduli, from 0 to less than 1; 0.5 by default.
+        #[serde(default = "default_exponent")]
+        exponent: f64,
+        /// Pressure up to which the moduli grow; it decides the step.
+        greatest_pressure: Pressure,
+        /// Critical stress ratio M in triaxial compression, above 0 and below 3.
+        critical_ratio: f64,
+        /// Critical void ratio at 1 kPa, above 0.
+        critical_void_ratio: f64,
+        /// Slope of the critical void ratio over the natural logarithm of pressure, 0 or more.
+        critical_slope: f64,
+        /// Coupling N of work, from 0 to less than 1; 0.3 by default.
+        #[serde(default = "default_coupling")]
+        coupling: f64,
+        /// Limit of dilation, 0 or more; 3.5 by default.
+        #[serde(default = "default_dilation_limit")]
+        dilation_limit: f64,
+        /// Plastic hardening, above 0.
+        hardening: f64,
+        /// Void ratio at the start, above 0.
+        void_ratio: f64,
+        /// Greatest pressure that pressed the sand from all sides before, above 0.
+        preconsolidation_pressure: Pressure,
+    },
+    /// A fluid with one viscosity.
+    Newtonian {
+        /// Dynamic viscosity, 0 or more.
+        viscosity: Viscosity,
+        /// Speed of sound, above 0: ten times the fastest flow keeps changes of density near one percent.
+        sound_speed: Velocity,
+        /// Whether the fluid carries tension; by default it comes apart.
+        #[serde(default)]
+        tension: bool,
+    },
+    /// A fluid with a yield stress.
+    Bingham {
+        /// Plastic viscosity, 0 or more.
+        viscosity: Viscosity,
+        /// Yield stress, 0 or more.
+        yield_stress: Pressure,
+        /// Time over which the yield stress is smoothed, above 0: below the yield stress the fluid creeps with the viscosity
+        /// `viscosity + smoothing_time * yield_stress`, which limits the step.
+        smoothing_time: Time,
+        /// Speed of sound, above 0: ten times the fastest flow keeps changes of density near one percent.
+        sound_speed: Velocity,
+        /// Whether the fluid carries tension; by default it comes apart.
+        #[serde(default)]
+        tension: bool,
     },
 }
 
@@ -80,60 +151,58 @@ pub enum ConeSpec {
     Extension,
 }
 
-impl From<ConeSpec> for ConeMatch {
-    fn from(spec: ConeSpec) -> Self {
-        match spec {
-            ConeSpec::PlaneStrain => Self::PlaneStrain,
-            ConeSpec::PlaneStrainDilation => Self::PlaneStrainDilation,
-            ConeSpec::Compression => Self::Compression,
-            ConeSpec::Extension => Self::Extension,
-        }
-    }
+/// How friction grows with the number I.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum FrictionSpec {
+    /// `at_rest + growth * I`.
+    Linear {
+        /// Friction coefficient at rest, above 0.
+        at_rest: f64,
+        /// Growth, 0 or more.
+        growth: f64,
+    },
+    /// `at_rest + (greatest - at_rest) / (1 + number / I)`.
+    Saturating {
+        /// Friction coefficient at rest, above 0.
+        at_rest: f64,
+        /// Friction coefficient of very fast flow, no less than that at rest.
+        greatest: f64,
+        /// The number I at which half of the growth is reached, above 0.
+        number: f64,
+    },
 }
 
-fn strength(friction: Angle, dilation: Option<Angle>, cohesion: Option<Pressure>) -> Strength {
-    Strength {
-        friction_angle: friction.value(),
-        dilation_angle: dilation.map_or(0.0, |angle| angle.value()),
-        cohesion: cohesion.map_or(0.0, |cohesion| cohesion.value()),
-    }
+/// What the rate is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum GrainsSpec {
+    /// Dry grains: the inertial number.
+    Dry {
+        /// Mean diameter, above 0.
+        diameter: Length,
+        /// Density of the grains, not of the bulk, above 0.
+        density: Density,
+    },
+    /// Grains in a liquid: the viscous number.
+    InLiquid {
+        /// Dynamic viscosity of the liquid, above 0.
+        viscosity: Viscosity,
+    },
 }
 
-impl TryFrom<&LawSpec> for AnyLaw {
-    type Error = SetupError;
+fn default_reference_pressure() -> Pressure {
+    100e3.into()
+}
 
-    fn try_from(spec: &LawSpec) -> Result<Self, SetupError> {
-        Ok(match *spec {
-            LawSpec::LinearElastic { young_modulus, poisson_ratio } => {
-                Self::LinearElastic(LinearElastic::new(young_modulus.value(), poisson_ratio)?)
-            }
-            LawSpec::MohrCoulomb {
-                young_modulus,
-                poisson_ratio,
-                friction_angle,
-                dilation_angle,
-                cohesion,
-                tensile_strength,
-            } => {
-                let elastic = LinearElastic::new(young_modulus.value(), poisson_ratio)?;
-                let law = MohrCoulomb::new(elastic, strength(friction_angle, dilation_angle, cohesion))?;
-                match tensile_strength {
-                    None => Self::MohrCoulomb(law),
-                    Some(tension) => Self::MohrCoulombWithCut(law.with_tensile_strength(tension.value())?),
-                }
-            }
-            LawSpec::DruckerPrager {
-                young_modulus,
-                poisson_ratio,
-                friction_angle,
-                dilation_angle,
-                cohesion,
-                cone,
-            } => {
-                let elastic = LinearElastic::new(young_modulus.value(), poisson_ratio)?;
-                let strength = strength(friction_angle, dilation_angle, cohesion);
-                Self::DruckerPrager(DruckerPrager::new(elastic, strength, cone.into())?)
-            }
-        })
-    }
+const fn default_exponent() -> f64 {
+    0.5
+}
+
+const fn default_coupling() -> f64 {
+    0.3
+}
+
+const fn default_dilation_limit() -> f64 {
+    3.5
 }
