@@ -1,4 +1,4 @@
-//! Time per update of Mohr-Coulomb, one particle at a time and side by side.
+//! Time per update of some laws, one particle at a time and side by side.
 //!
 //! ```sh
 //! RUSTFLAGS=-Ctarget-cpu=native cargo run --release -p granular-constitutive --example speed
@@ -6,8 +6,8 @@
 
 use granular_constitutive::granular_core::{SymmetricTensor, random::Chance};
 use granular_constitutive::{
-    Axes, ConeMatch, ConstitutiveLaw, DruckerPrager, InPlane, InSpace, Increment, LinearElastic, Memory,
-    MohrCoulomb, Strength,
+    Axes, Bingham, ConeMatch, ConstitutiveLaw, DruckerPrager, Grains, InPlane, InSpace, Increment,
+    LinearElastic, Memory, MohrCoulomb, MuI, SaturatingFriction, Strength, Tait,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -54,7 +54,7 @@ fn update<A: Axes, L: ConstitutiveLaw>(law: &L, batch: &mut Batch, lane: usize) 
     for part in 0..L::Memory::LEN {
         batch.memory[part][lane] = memory.as_ref()[part];
     }
-    batch.lost[lane] += response.plastic_work;
+    batch.lost[lane] += response.plastic_work + response.viscous_work;
 }
 
 #[inline(never)]
@@ -137,5 +137,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     measure::<InSpace, _>("Mohr-Coulomb, cut", &clay);
     measure::<InPlane, _>("Drucker-Prager", &cone);
     measure::<InSpace, _>("Drucker-Prager", &cone);
+    let grains = Grains::Dry { diameter: 1e-3, density: 2500.0 };
+    let flowing = MuI::new(elastic, SaturatingFriction::glass_beads(), grains)?;
+    let mud = Bingham::new(1.0, 50.0, 10.0, Tait::new(1500.0, 30.0)?)?;
+    measure::<InPlane, _>("mu(I)", &flowing);
+    measure::<InSpace, _>("mu(I)", &flowing);
+    measure::<InPlane, _>("Bingham", &mud);
     Ok(())
 }

@@ -84,6 +84,68 @@ fn correct(
     }
 }
 
+/// The best strain so far.
+struct Best {
+    strain: [f64; 6],
+    stress: [f64; 6],
+    misses: [f64; 6],
+    size: f64,
+    /// Slopes that may serve for the next step.
+    slopes: Option<[[f64; 6]; 6]>,
+    damping: f64,
+}
+
+/// What a step of the search led to.
+#[derive(PartialEq)]
+enum Outcome {
+    Nearer,
+    NoNearer,
+    /// Even the shortest steps lead no nearer.
+    Stuck,
+}
+
+impl Best {
+    fn at<F: Fn([f64; 6]) -> [f64; 6]>(search: &Search<'_, F>, strain: [f64; 6]) -> Self {
+        let (stress, misses) = search.misses(strain);
+        Self { strain, stress, misses, size: size_of(&misses), slopes: None, damping: 1e-12 }
+    }
+
+    /// How far the misses are from what counts as met.
+    fn excess(&self, targets: &[f64; 6]) -> f64 {
+        let parts = self.stress.iter().chain(targets);
+        let scale = parts.fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        if self.size == 0.0 { 0.0 } else { self.size / (TOLERANCE * scale) }
+    }
+
+    fn step<F: Fn([f64; 6]) -> [f64; 6]>(&mut self, search: &Search<'_, F>) -> Outcome {
+        let are_new = self.slopes.is_none();
+        let mut slopes = self.slopes.take().unwrap_or_else(|| search.slopes(self.strain, self.misses));
+        let strain = moved(&search.free, self.strain, &slopes, &self.misses, self.damping);
+        let (stress, misses) = search.misses(strain);
+        let size = size_of(&misses);
+        if size < self.size {
+            correct(&mut slopes, &search.free, [self.strain, strain], [self.misses, misses]);
+            // Slow progress asks for new slopes.
+            self.slopes = (size < 0.5 * self.size).then_some(slopes);
+            (self.strain, self.stress, self.misses, self.size) = (strain, stress, misses, size);
+            self.damping = (self.damping * 0.1).max(1e-14);
+            return Outcome::Nearer;
+        }
+        if are_new {
+            self.damping = (self.damping * 10.0).max(1e-8);
+        }
+        if self.damping > 1e6 { Outcome::Stuck } else { Outcome::NoNearer }
+    }
+
+    /// The component that misses its target most.
+    fn unreached(&self, free: &[usize], targets: &[f64; 6]) -> Unreached {
+        let farther = |a: &usize, b: &usize| self.misses[*a].abs().total_cmp(&self.misses[*b].abs());
+        let worst = (0..free.len()).max_by(farther).unwrap_or(0);
+        let component = free.get(worst).copied().unwrap_or(0);
+        Unreached { component, wanted: targets[component], found: self.stress[component] }
+    }
+}
+
 /// The increment of strain that meets all targets, by damped least squares (Levenberg and Marquardt): at the strength the answer
 /// may not depend on all strains, and Newton's method has no unique step.
 pub(super) fn strain_for(
@@ -92,49 +154,31 @@ pub(super) fn strain_for(
     targets: &[f64; 6],
     start: [f64; 6],
 ) -> Result<[f64; 6], Unreached> {
-    let free: Vec<usize> =
-        (0..6).filter(|&component| matches!(controls[component], Control::Stress(_))).collect();
+    let is_free = |component: &usize| matches!(controls[*component], Control::Stress(_));
+    let free: Vec<usize> = (0..6).filter(is_free).collect();
     let mut strain = *targets;
     for &component in &free {
         strain[component] = start[component];
     }
     let search = Search { answer, free, targets };
-    let (mut stress, mut misses) = search.misses(strain);
-    if let Some(component) = (0..6).find(|&component| !stress[component].is_finite()) {
-        return Err(Unreached { component, wanted: targets[component], found: stress[component] });
+    let mut best = Best::at(&search, strain);
+    if let Some(component) = (0..6).find(|&component| !best.stress[component].is_finite()) {
+        return Err(Unreached { component, wanted: targets[component], found: best.stress[component] });
     }
-    let mut damping = 1e-12;
-    let mut best = size_of(&misses);
-    let mut slopes = None;
     for _ in 0..ITERATIONS {
-        let scale = stress.iter().chain(targets).fold(0.0, |largest: f64, part| largest.max(part.abs()));
-        if best <= TOLERANCE * scale {
-            return Ok(strain);
-        }
-        let are_new = slopes.is_none();
-        let mut at = slopes.take().unwrap_or_else(|| search.slopes(strain, misses));
-        let trial = moved(&search.free, strain, &at, &misses, damping);
-        let (trial_stress, trial_misses) = search.misses(trial);
-        correct(&mut at, &search.free, [strain, trial], [misses, trial_misses]);
-        let size = size_of(&trial_misses);
-        if size < best {
-            // Slow progress asks for new slopes.
-            slopes = (size < 0.5 * best).then_some(at);
-            (strain, stress, misses, best) = (trial, trial_stress, trial_misses, size);
-            damping = (damping * 0.1).max(1e-14);
-        } else if best <= 100.0 * TOLERANCE * scale {
-            // Round-off of the law: no step leads nearer.
-            return Ok(strain);
-        } else if damping > 1e6 {
+        if best.excess(targets) <= 1.0 {
             break;
-        } else if are_new {
-            damping = (damping * 10.0).max(1e-8);
+        }
+        let outcome = best.step(&search);
+        // Round-off of the law may keep it from coming nearer.
+        if outcome == Outcome::Stuck || outcome == Outcome::NoNearer && best.excess(targets) <= 100.0 {
+            break;
         }
     }
-    let farthest = |a: &usize, b: &usize| misses[*a].abs().total_cmp(&misses[*b].abs());
-    let worst = (0..search.free.len()).max_by(farthest).unwrap_or(0);
-    let component = search.free.get(worst).copied().unwrap_or(0);
-    Err(Unreached { component, wanted: targets[component], found: stress[component] })
+    if best.excess(targets) <= 100.0 {
+        return Ok(best.strain);
+    }
+    Err(best.unreached(&search.free, targets))
 }
 
 /// The strain after a step of damped least squares.

@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod energy;
+#[cfg(feature = "serde")]
+mod laws_page;
 mod property;
 mod same_bits;
 mod support;
