@@ -9,8 +9,8 @@ use crate::load::{Givers, load};
 use crate::motion::{Plan, Strains, Stress, Watch, move_particles, strain_particles};
 use crate::setup::{ObjectiveRate, Options, ShapeFunctions};
 use crate::shape::{Linear, QuadraticBspline, Shape, UniformGimp};
-use crate::turning::{ByRate, ByRotation, Turning};
-use granular_constitutive::{ConstitutiveLaw, InPlane, InSpace, LinearElastic};
+use crate::turning::{ByRate, ByRotation, Gradients, Turning};
+use granular_constitutive::{ConstitutiveLaw, DruckerPrager, InPlane, InSpace, LinearElastic, MohrCoulomb};
 use granular_core::{D2, D3, Dim};
 use std::any::{Any, TypeId};
 
@@ -45,36 +45,36 @@ pub(crate) fn kernels<D: Dim>(options: &Options) -> Kernels<D> {
 
 #[inline(never)]
 fn of_plane(options: &Options) -> Kernels<D2> {
-    of_shape(options)
+    of_shape::<D2, InPlane>(options)
 }
 
 #[inline(never)]
 fn of_space(options: &Options) -> Kernels<D3> {
-    of_shape(options)
+    of_shape::<D3, InSpace>(options)
 }
 
-fn of_shape<D: Dim>(options: &Options) -> Kernels<D> {
+fn of_shape<D: Dim, A: Gradients>(options: &Options) -> Kernels<D> {
     match options.shape {
-        ShapeFunctions::Linear => of_rate::<D, Linear>(options),
-        ShapeFunctions::UniformGimp => of_rate::<D, UniformGimp>(options),
-        ShapeFunctions::QuadraticBspline => of_rate::<D, QuadraticBspline>(options),
+        ShapeFunctions::Linear => of_rate::<D, A, Linear>(options),
+        ShapeFunctions::UniformGimp => of_rate::<D, A, UniformGimp>(options),
+        ShapeFunctions::QuadraticBspline => of_rate::<D, A, QuadraticBspline>(options),
     }
 }
 
-fn of_rate<D: Dim, S: Shape>(options: &Options) -> Kernels<D> {
+fn of_rate<D: Dim, A: Gradients, S: Shape>(options: &Options) -> Kernels<D> {
     match options.objective_rate {
-        ObjectiveRate::HughesWinget => of::<D, S, ByRotation>(),
-        ObjectiveRate::Jaumann => of::<D, S, ByRate>(),
+        ObjectiveRate::HughesWinget => of::<D, A, S, ByRotation>(),
+        ObjectiveRate::Jaumann => of::<D, A, S, ByRate>(),
     }
 }
 
-fn of<D: Dim, S: Shape, T: Turning>() -> Kernels<D> {
+fn of<D: Dim, A: Gradients, S: Shape, T: Turning>() -> Kernels<D> {
     Kernels {
         load: load::<D>,
         give: give::<D, S>,
         take: take::<D, S>,
         move_particles: move_particles::<D>,
-        strain_particles: strain_particles::<D, T>,
+        strain_particles: strain_particles::<D, A, T>,
         reach: S::NODES,
         has_width: S::HAS_WIDTH,
     }
@@ -135,4 +135,4 @@ macro_rules! compiled_here {
         }
     )*};
 }
-compiled_here!(LinearElastic);
+compiled_here!(LinearElastic, MohrCoulomb<false>, MohrCoulomb<true>, DruckerPrager);

@@ -88,26 +88,30 @@ impl<D: Dim> Grid<D> {
         self.homes.extend_from_slice(homes);
         let count = neighbours::<D>();
         self.blocks.clear();
+        grow(&mut self.blocks, homes.len() * count);
         self.blocks.extend(homes.iter().flat_map(|&home| (0..count).map(move |k| shifted::<D>(home, k, 1))));
         self.blocks.sort_unstable();
         self.blocks.dedup();
         let Self { blocks, homes, sources, around, .. } = self;
         let number = |list: &[BlockAt], at: BlockAt| list.binary_search(&at).map_or(NONE, |k| k as u32);
         sources.clear();
+        grow(sources, blocks.len() * count);
         sources.extend(blocks.iter().flat_map(|&block| {
             let homes = &*homes;
             (0..count).map(move |k| number(homes, shifted::<D>(block, k, -1)))
         }));
         around.clear();
+        grow(around, homes.len() * count);
         around.extend(homes.iter().flat_map(|&home| {
             let blocks = &*blocks;
             (0..count).map(move |k| number(blocks, shifted::<D>(home, k, 1)))
         }));
         let nodes = self.blocks.len() * block_cells::<D>();
-        self.sums.clear();
-        self.sums.resize(nodes, Node::ZERO);
-        self.motion.clear();
-        self.motion.resize(nodes, Node::ZERO);
+        for on_nodes in [&mut self.sums, &mut self.motion] {
+            on_nodes.clear();
+            grow(on_nodes, nodes);
+            on_nodes.resize(nodes, Node::ZERO);
+        }
     }
 
     /// Sums what tiles hold on the nodes of a block.
@@ -145,6 +149,13 @@ impl<D: Dim> Grid<D> {
     }
 }
 
+/// Makes room, and a quarter more, so that a flow that spreads seldom asks again.
+pub(crate) fn grow<T>(list: &mut Vec<T>, count: usize) {
+    if list.capacity() < count {
+        list.reserve_exact(count + count / 4 - list.len());
+    }
+}
+
 /// The block that lies from another as neighbour `k` does, or (`sign` -1) as the one whose neighbour it is.
 fn shifted<D: Dim>(block: BlockAt, k: usize, sign: i32) -> BlockAt {
     let offset = offset_of::<D>(k);
@@ -154,8 +165,8 @@ fn shifted<D: Dim>(block: BlockAt, k: usize, sign: i32) -> BlockAt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use granular_core::glam::DVec2;
     use granular_core::D2;
+    use granular_core::glam::DVec2;
 
     #[test]
     fn what_tiles_hold_is_collected_once_and_fetched_back() {

@@ -6,5 +6,7 @@ use granular_core::testing::CountingAllocator;
 static ALLOCATOR: CountingAllocator = CountingAllocator::new();
 
 mod balance;
+mod closed_forms;
 mod contract;
+mod robust;
 mod sample;
