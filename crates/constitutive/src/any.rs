@@ -21,7 +21,6 @@ macro_rules! laws {
     ($($(#[$about:meta])* $variant:ident($law:ty), $name:literal;)*) => {
         /// Any law of this crate.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #[non_exhaustive]
         // A program has a few of them.
         #[allow(clippy::large_enum_variant)]
         pub enum AnyLaw {

@@ -1,8 +1,8 @@
 //! Particle-steps per second for a column of soil in plane strain: 16 particles in a cell, rough floor and wall.
 //!
-//! `cargo run --release -p granular-mpm --example column_speed -- [particles a side] [steps]`
+//! `cargo run --release -p granular-mpm --example column_speed -- [particles a side] [steps] [threads]`
 
-use granular_constitutive::LinearElastic;
+use granular_constitutive::{LinearElastic, MohrCoulomb, Strength};
 use granular_core::glam::DVec2;
 use granular_core::{D2, Solver, SymmetricTensor};
 use granular_mpm::{Condition, Mpm2, Options, Particle, Scheme, Setup, ShapeFunctions, Wall};
@@ -26,7 +26,9 @@ fn column(side: usize, options: Options) -> Mpm2 {
         let across = vertical * (1.0 - 23.2_f64.to_radians().sin());
         particle.stress = SymmetricTensor { xx: across, yy: vertical, zz: across, ..SymmetricTensor::ZERO };
     }
-    let law = LinearElastic::new(1.98e6, 0.23).expect("moduli in range");
+    let elastic = LinearElastic::new(1.98e6, 0.23).expect("moduli in range");
+    let strength = Strength::of_friction(23.2_f64.to_radians());
+    let law = MohrCoulomb::new(elastic, strength).expect("a strength in range");
     mpm.body(law, DENSITY, &particles).expect("particles in range");
     mpm
 }
@@ -35,7 +37,8 @@ fn main() {
     let mut numbers = std::env::args().skip(1).filter_map(|argument| argument.parse::<usize>().ok());
     let side = numbers.next().unwrap_or(400);
     let steps = numbers.next().unwrap_or(100) as u64;
-    for threads in [1, 2] {
+    let threads = numbers.next().map_or(vec![1, 2], |threads| vec![threads]);
+    for threads in threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         for shape in [ShapeFunctions::Linear, ShapeFunctions::UniformGimp, ShapeFunctions::QuadraticBspline] {
             for scheme in [Scheme::StressLast, Scheme::ModifiedStressLast] {

@@ -234,15 +234,8 @@ fn respond<D: Dim, A: Axes, L: ConstitutiveLaw>(
     let stress = &mut cut::<D>(stress, count);
     let mut lost = [[0.0; BATCH]; 2];
     for k in 0..count {
-        let strain = SymmetricTensor {
-            xx: strains.strain[0][k],
-            yy: strains.strain[1][k],
-            zz: strains.strain[2][k],
-            xy: strains.strain[3][k],
-            yz: strains.strain[4][k],
-            xz: strains.strain[5][k],
-        };
-        let increment = Increment { strain, dt: plan.dt, volume_ratio: strains.volume_ratio[k] };
+        let increment =
+            Increment { strain: strains.at(k), dt: plan.dt, volume_ratio: strains.volume_ratio[k] };
         let mut remembered = memory[k];
         let response = law.respond::<A>(stress_at::<D>(stress, k), &mut remembered, &increment);
         memory[k] = remembered;

@@ -9,9 +9,10 @@ use crate::load::{Givers, load};
 use crate::motion::{Plan, Strains, Stress, Watch, move_particles, strain_particles};
 use crate::setup::{ObjectiveRate, Options, ShapeFunctions};
 use crate::shape::{Linear, QuadraticBspline, Shape, UniformGimp};
-use crate::turning::{ByRate, ByRotation, Turning};
+use crate::turning::{ByRate, ByRotation, Gradients, Turning};
 use granular_constitutive::{
-    AnyLaw, ConstitutiveLaw, DruckerPrager, InPlane, InSpace, LinearElastic, MohrCoulomb,
+    AnyLaw, Bingham, ConstitutiveLaw, DruckerPrager, InPlane, InSpace, LinearElastic, LinearFriction,
+    MohrCoulomb, MuI, Newtonian, NorSand, SaturatingFriction,
 };
 use granular_core::{D2, D3, Dim};
 use std::any::{Any, TypeId};
@@ -47,36 +48,36 @@ pub(crate) fn kernels<D: Dim>(options: &Options) -> Kernels<D> {
 
 #[inline(never)]
 fn of_plane(options: &Options) -> Kernels<D2> {
-    of_shape(options)
+    of_shape::<D2, InPlane>(options)
 }
 
 #[inline(never)]
 fn of_space(options: &Options) -> Kernels<D3> {
-    of_shape(options)
+    of_shape::<D3, InSpace>(options)
 }
 
-fn of_shape<D: Dim>(options: &Options) -> Kernels<D> {
+fn of_shape<D: Dim, A: Gradients>(options: &Options) -> Kernels<D> {
     match options.shape {
-        ShapeFunctions::Linear => of_rate::<D, Linear>(options),
-        ShapeFunctions::UniformGimp => of_rate::<D, UniformGimp>(options),
-        ShapeFunctions::QuadraticBspline => of_rate::<D, QuadraticBspline>(options),
+        ShapeFunctions::Linear => of_rate::<D, A, Linear>(options),
+        ShapeFunctions::UniformGimp => of_rate::<D, A, UniformGimp>(options),
+        ShapeFunctions::QuadraticBspline => of_rate::<D, A, QuadraticBspline>(options),
     }
 }
 
-fn of_rate<D: Dim, S: Shape>(options: &Options) -> Kernels<D> {
+fn of_rate<D: Dim, A: Gradients, S: Shape>(options: &Options) -> Kernels<D> {
     match options.objective_rate {
-        ObjectiveRate::HughesWinget => of::<D, S, ByRotation>(),
-        ObjectiveRate::Jaumann => of::<D, S, ByRate>(),
+        ObjectiveRate::HughesWinget => of::<D, A, S, ByRotation>(),
+        ObjectiveRate::Jaumann => of::<D, A, S, ByRate>(),
     }
 }
 
-fn of<D: Dim, S: Shape, T: Turning>() -> Kernels<D> {
+fn of<D: Dim, A: Gradients, S: Shape, T: Turning>() -> Kernels<D> {
     Kernels {
         load: load::<D>,
         give: give::<D, S>,
         take: take::<D, S>,
         move_particles: move_particles::<D>,
-        strain_particles: strain_particles::<D, T>,
+        strain_particles: strain_particles::<D, A, T>,
         reach: S::NODES,
         has_width: S::HAS_WIDTH,
     }
@@ -137,7 +138,17 @@ macro_rules! compiled_here {
         }
     )*};
 }
-compiled_here!(LinearElastic, MohrCoulomb, MohrCoulomb<true>, DruckerPrager);
+compiled_here!(
+    LinearElastic,
+    MohrCoulomb,
+    MohrCoulomb<true>,
+    DruckerPrager,
+    MuI<LinearFriction>,
+    MuI<SaturatingFriction>,
+    NorSand,
+    Newtonian,
+    Bingham,
+);
 
 impl<D: Dim> From<AnyLaw> for BodyLaw<D> {
     fn from(law: AnyLaw) -> Self {
@@ -146,6 +157,11 @@ impl<D: Dim> From<AnyLaw> for BodyLaw<D> {
             AnyLaw::MohrCoulomb(law) => law.into(),
             AnyLaw::MohrCoulombWithCut(law) => law.into(),
             AnyLaw::DruckerPrager(law) => law.into(),
+            AnyLaw::LinearMuI(law) => law.into(),
+            AnyLaw::MuI(law) => law.into(),
+            AnyLaw::NorSand(law) => law.into(),
+            AnyLaw::Newtonian(law) => law.into(),
+            AnyLaw::Bingham(law) => law.into(),
         }
     }
 }

@@ -1,13 +1,19 @@
 //! Limits on the step.
 
 use crate::mpm::Mpm;
-use crate::setup::ShapeFunctions;
+use crate::setup::{Scheme, ShapeFunctions};
 use granular_core::{Dim, Limits, Memory, StepError, StepLimit};
 
-/// Step at which a wave crosses a cell, times this, is stable for any place of particles.
-const fn stable_share(shape: ShapeFunctions) -> f64 {
-    match shape {
-        ShapeFunctions::Linear | ShapeFunctions::UniformGimp | ShapeFunctions::QuadraticBspline => 1.0,
+/// The longest stable step over that in which a wave crosses a cell. Measured with bodies at random places in the grid and random
+/// velocities, Poisson's ratios from 0 to 0.45, 4 to 16 particles in a cell, in plane and space: these are stable, and a seventh
+/// more is not for some.
+const fn stable_share(scheme: Scheme, shape: ShapeFunctions) -> f64 {
+    match (scheme, shape) {
+        (Scheme::StressLast, ShapeFunctions::QuadraticBspline) => 0.7,
+        (Scheme::StressLast, ShapeFunctions::UniformGimp) => 0.4,
+        (Scheme::StressLast, ShapeFunctions::Linear) => 0.25,
+        (_, ShapeFunctions::QuadraticBspline) => 1.6,
+        _ => 1.2,
     }
 }
 
@@ -32,7 +38,7 @@ impl<D: Dim> Mpm<D> {
     fn wave_step(&self) -> (f64, f64) {
         let speeds = self.groups.iter().map(|group| group.body.wave_speed(group.density / group.loosest));
         let wave = speeds.fold(0.0, f64::max);
-        let share = stable_share(self.options.shape);
+        let share = stable_share(self.options.scheme, self.options.shape);
         (share * self.grid.lattice.cell / (wave + self.fastest), wave)
     }
 
@@ -77,7 +83,7 @@ impl<D: Dim> Mpm<D> {
 
     /// Refuses a step that is not stable.
     pub(crate) fn check_stability(&self, dt: f64) -> Result<(), StepError> {
-        if dt <= self.stable_step() {
+        if self.any_step || dt <= self.stable_step() {
             return Ok(());
         }
         let shortest = self.found().into_iter().flatten().reduce(|a, b| if b.dt < a.dt { b } else { a });

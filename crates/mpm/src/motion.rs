@@ -2,8 +2,8 @@
 
 use crate::batch::BATCH;
 use crate::layout::Node;
-use crate::particles::stress_components;
-use crate::turning::Turning;
+use crate::particles::{components, stress_components};
+use crate::turning::{Gradients, Turning};
 use granular_core::{Dim, Linear, SymmetricTensor, Vector};
 use multiversion::multiversion;
 
@@ -107,6 +107,20 @@ impl Strains {
     pub(crate) fn new() -> Self {
         Self { strain: [[0.0; BATCH]; 6], volume_ratio: [1.0; BATCH] }
     }
+
+    #[inline(always)]
+    fn put<D: Dim>(&mut self, k: usize, strain: SymmetricTensor) {
+        for (to, value) in self.strain.iter_mut().zip(components(strain)).take(stress_components::<D>()) {
+            to[k] = value;
+        }
+    }
+
+    /// The strain of particle `k`.
+    #[inline(always)]
+    pub(crate) fn at(&self, k: usize) -> SymmetricTensor {
+        let [xx, yy, zz, xy, yz, xz] = &self.strain;
+        SymmetricTensor { xx: xx[k], yy: yy[k], zz: zz[k], xy: xy[k], yz: yz[k], xz: xz[k] }
+    }
 }
 
 /// A body's stresses, by component.
@@ -151,7 +165,7 @@ pub(crate) fn cut<'a, D: Dim>(stress: &'a mut Stress<'_>, count: usize) -> Stres
 /// Finds strains of particles from the gradients that were summed for them (per cell), turns their stresses with them and lets
 /// volumes follow.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(crate) fn strain_particles<D: Dim, T: Turning>(
+pub(crate) fn strain_particles<D: Dim, A: Gradients, T: Turning>(
     (dt_per_cell, vector, density): (f64, usize, f64),
     rows: &[[Node; BATCH]; 4],
     strains: &mut Strains,
@@ -167,33 +181,16 @@ pub(crate) fn strain_particles<D: Dim, T: Turning>(
     let mut loosest = watch.loosest;
     for k in 0..count {
         // Derivative of component `row` along `column`, times the step.
-        let gradient = |row: usize, column: usize| {
-            if row < D::N && column < D::N {
-                rows[1 + column][k].0[(lane + row) & 7] * dt_per_cell
-            } else {
-                0.0
-            }
-        };
-        let [xx, yy, zz] = [gradient(0, 0), gradient(1, 1), gradient(2, 2)];
-        let [xy, yx] = [gradient(0, 1), gradient(1, 0)];
-        let [yz, zy, xz, zx] = [gradient(1, 2), gradient(2, 1), gradient(0, 2), gradient(2, 0)];
-        let strain = [xx, yy, zz, 0.5 * (xy + yx), 0.5 * (yz + zy), 0.5 * (xz + zx)];
-        for (to, value) in strains.strain.iter_mut().zip(strain).take(stress_components::<D>()) {
-            to[k] = value;
-        }
-        let spin = [0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)];
+        let gradient = A::gradient(|row, column| rows[1 + column][k].0[(lane + row) & 7] * dt_per_cell);
+        strains.put::<D>(k, A::strain(gradient));
         let before = stress_at::<D>(stress, k);
-        let turned = T::turned::<D>(before, spin);
-        put_stress::<D>(stress, k, turned);
-        // exp(tr) to third order: the strain that the law sees. The determinant of 1 + dt L would let what only turns grow.
-        let dilation = xx + yy + zz;
-        let stretch = 1.0 + dilation + 0.5 * dilation * dilation;
-        volume[k] *= stretch;
+        put_stress::<D>(stress, k, T::turned::<A>(before, gradient));
+        volume[k] *= A::stretch(gradient);
         let ratio = volume[k] * density / mass[k];
         strains.volume_ratio[k] = ratio;
         // Material that carries nothing has separated: it has no waves until it is as dense as it was.
         let carries = before.xx != 0.0 || before.yy != 0.0 || before.zz != 0.0;
-        loosest = loosest.max(if carries || !(ratio > 0.0) { ratio } else { 1.0 }.to_bits());
+        loosest = loosest.max(if carries || ratio.is_nan() || ratio <= 0.0 { ratio } else { 1.0 }.to_bits());
     }
     watch.loosest = loosest;
 }

@@ -51,6 +51,8 @@ pub struct Mpm<D: Dim> {
     pub(crate) losses: Losses,
     /// Energy of what was put in \[J\].
     pub(crate) injected: f64,
+    /// Whether steps are taken that are too long.
+    pub(crate) any_step: bool,
     pub(crate) clock: StepClock,
     pub(crate) steps: u64,
     /// Places of nodes that hold mass, once they were asked for.
@@ -87,6 +89,7 @@ impl<D: Dim> Mpm<D> {
             travel: 0.0,
             losses: Losses::default(),
             injected: 0.0,
+            any_step: false,
             clock: StepClock::default(),
             steps: 0,
             node_places: OnceLock::new(),
@@ -263,6 +266,11 @@ impl<D: Dim> Mpm<D> {
     pub fn set_moving(&mut self, wall: usize, moves: bool) -> bool {
         let time = self.clock.time();
         self.moving.set_running(wall, moves, time)
+    }
+
+    /// Takes steps that are too long instead of refusing them: for studies of stability.
+    pub fn allow_any_step(&mut self) {
+        self.any_step = true;
     }
 
     /// Adds a velocity \[m/s\] to each particle of a body, by where it is.

@@ -29,6 +29,10 @@ pub(crate) struct Touch<D: Dim> {
     pub(crate) lost: [f64; 2],
     /// How much the wall had to slow the node down to keep it out, so far in this step.
     press: f64,
+    /// Whether the wall keeps the node out in this step.
+    is_pressed: bool,
+    /// Whether the node sticks to the wall in this step.
+    sticks: bool,
 }
 
 /// All nodes that walls act on, block by block.
@@ -77,6 +81,8 @@ impl<D: Dim> Touches<D> {
                         impulse: D::Vec::ZERO,
                         lost: [0.0; 2],
                         press: 0.0,
+                        is_pressed: false,
+                        sticks: false,
                     });
                 }
             }
@@ -117,31 +123,68 @@ impl<D: Dim> Touch<D> {
     /// Nothing has happened yet in this step.
     pub(crate) fn rest(&mut self) {
         (self.press, self.impulse, self.lost) = (0.0, D::Vec::ZERO, [0.0; 2]);
+        (self.is_pressed, self.sticks) = (false, false);
     }
 
-    /// Keeps a node out of the wall. Returns its new velocity.
-    fn stop(&mut self, condition: Condition, velocity: D::Vec) -> D::Vec {
-        let into = (velocity - self.velocity).dot(self.normal);
+    /// The velocity without what moves against the wall, or with it.
+    fn along(&self, velocity: D::Vec) -> D::Vec {
+        velocity - self.normal * self.outward(velocity)
+    }
+
+    /// How fast something moves out of the wall.
+    fn outward(&self, velocity: D::Vec) -> f64 {
+        (velocity - self.velocity).dot(self.normal)
+    }
+
+    /// Whether the node may leave the wall.
+    fn lets_go(&self, condition: Condition) -> bool {
+        matches!(condition, Condition::Frictional { .. }) && !self.both_sides
+    }
+
+    /// Keeps a velocity out of the wall.
+    fn keep_out(&self, condition: Condition, velocity: D::Vec) -> D::Vec {
         match condition {
             Condition::Fixed => self.velocity,
-            Condition::Frictional { .. } if into >= 0.0 && !self.both_sides => velocity,
-            Condition::Slip | Condition::Frictional { .. } => {
-                self.press += into.abs();
-                velocity - self.normal * into
-            }
+            _ if self.lets_go(condition) && self.outward(velocity) >= 0.0 => velocity,
+            _ => self.along(velocity),
         }
     }
 
+    /// Notes whether the wall acts on a node that would have this velocity.
+    fn note(&mut self, condition: Condition, velocity: D::Vec) {
+        self.is_pressed = !self.lets_go(condition) || self.outward(velocity) < 0.0;
+    }
+
+    /// A velocity with what the wall does to the node in this step.
+    fn hold(&self, condition: Condition, velocity: D::Vec) -> D::Vec {
+        match condition {
+            Condition::Fixed => self.velocity,
+            _ if self.sticks => self.velocity,
+            _ if self.is_pressed => self.along(velocity),
+            _ => self.keep_out(condition, velocity),
+        }
+    }
+
+    /// Stops a node that moves into the wall. Returns its new velocity.
+    fn stop(&mut self, condition: Condition, velocity: D::Vec) -> D::Vec {
+        let after = self.keep_out(condition, velocity);
+        self.press += (after - velocity).dot(self.normal).abs();
+        after
+    }
+
     /// Slows a node that rubs. Returns its new velocity.
-    fn rub(&self, condition: Condition, velocity: D::Vec) -> D::Vec {
+    fn rub(&mut self, condition: Condition, velocity: D::Vec) -> D::Vec {
         let Condition::Frictional { friction, static_friction } = condition else { return velocity };
         let relative = velocity - self.velocity;
         let along = relative - self.normal * relative.dot(self.normal);
         let speed = along.length();
-        if speed <= static_friction * self.press {
+        self.sticks = self.is_pressed && speed <= static_friction * self.press;
+        if self.sticks {
             velocity - along
-        } else {
+        } else if speed > 0.0 {
             velocity - along * (friction * self.press / speed).min(1.0)
+        } else {
+            velocity
         }
     }
 
@@ -153,40 +196,80 @@ impl<D: Dim> Touch<D> {
     }
 }
 
-/// Lets walls act on a node of some mass: first all keep it out, then those with friction rub. Returns its new velocity.
-pub(crate) fn meet<D: Dim>(
-    touches: &mut [Touch<D>],
-    walls: &[Wall<D>],
-    mass: f64,
-    velocity: D::Vec,
-) -> D::Vec {
-    let condition = |touch: &Touch<D>| walls[touch.wall as usize].condition;
-    let mut now = velocity;
-    // Walls that do not meet at right angles push a node into one another.
-    let rounds = if touches.len() > 1 { 4 } else { 1 };
-    for _ in 0..rounds {
-        now = stop_all(touches, walls, mass, now);
-    }
-    for touch in &mut *touches {
-        let after = touch.rub(condition(touch), now);
-        touch.book(mass, now, after, 0);
-        now = after;
-    }
-    if touches.len() > 1 { stop_all(touches, walls, mass, now) } else { now }
+/// Walls at one node.
+pub(crate) struct Meeting<'a, D: Dim> {
+    pub(crate) touches: &'a mut [Touch<D>],
+    pub(crate) walls: &'a [Wall<D>],
+    pub(crate) mass: f64,
 }
 
-fn stop_all<D: Dim>(touches: &mut [Touch<D>], walls: &[Wall<D>], mass: f64, velocity: D::Vec) -> D::Vec {
-    touches.iter_mut().fold(velocity, |before, touch| {
-        let after = touch.stop(walls[touch.wall as usize].condition, before);
-        touch.book(mass, before, after, 1);
-        after
-    })
-}
+impl<D: Dim> Meeting<'_, D> {
+    fn condition(walls: &[Wall<D>], touch: &Touch<D>) -> Condition {
+        walls[touch.wall as usize].condition
+    }
 
-/// Keeps a node out of walls without booking it.
-pub(crate) fn keep_out<D: Dim>(touches: &[Touch<D>], walls: &[Wall<D>], velocity: D::Vec) -> D::Vec {
-    touches.iter().fold(velocity, |before, touch| {
-        let mut unbooked = *touch;
-        unbooked.stop(walls[touch.wall as usize].condition, before)
-    })
+    /// Whether more walls than one act: those that do not meet at right angles push a node into one another.
+    fn rounds(&self) -> usize {
+        if self.touches.len() > 1 { 4 } else { 1 }
+    }
+
+    /// Lets walls act on a node with a mean velocity and a change of it by forces: first all keep it out, then those with
+    /// friction rub. Returns its velocity before and after.
+    ///
+    /// What the nodes beside a wall have of the particles before it is no motion into the wall, or out of one that presses: it is
+    /// left out without a push, and particles feel the wall by their stresses.
+    pub(crate) fn act(&mut self, mean: D::Vec, change: D::Vec) -> (D::Vec, D::Vec) {
+        self.touches.iter_mut().for_each(Touch::rest);
+        if self.touches.is_empty() {
+            return (mean, mean + change);
+        }
+        let out = self.fold(mean, |touch, condition, now| touch.keep_out(condition, now));
+        let before = self.fold(out, |touch, condition, now| {
+            touch.note(condition, now + change);
+            touch.hold(condition, now)
+        });
+        let stopped = self.stop(before + change);
+        let rubbed = self.rub(stopped);
+        // Friction of one wall may push into another.
+        let after = if self.touches.len() > 1 { self.stop(rubbed) } else { rubbed };
+        (before, after)
+    }
+
+    /// A velocity with what walls have done to the node in this step.
+    pub(crate) fn hold(&mut self, velocity: D::Vec) -> D::Vec {
+        self.fold(velocity, |touch, condition, now| touch.hold(condition, now))
+    }
+
+    fn fold(
+        &mut self,
+        velocity: D::Vec,
+        mut change: impl FnMut(&mut Touch<D>, Condition, D::Vec) -> D::Vec,
+    ) -> D::Vec {
+        let mut now = velocity;
+        for _ in 0..self.rounds() {
+            for touch in &mut *self.touches {
+                now = change(touch, Self::condition(self.walls, touch), now);
+            }
+        }
+        now
+    }
+
+    fn stop(&mut self, velocity: D::Vec) -> D::Vec {
+        let mass = self.mass;
+        self.fold(velocity, |touch, condition, before| {
+            let after = touch.stop(condition, before);
+            touch.book(mass, before, after, 1);
+            after
+        })
+    }
+
+    fn rub(&mut self, velocity: D::Vec) -> D::Vec {
+        let mut now = velocity;
+        for touch in &mut *self.touches {
+            let after = touch.rub(Self::condition(self.walls, touch), now);
+            touch.book(self.mass, now, after, 0);
+            now = after;
+        }
+        now
+    }
 }

@@ -176,6 +176,7 @@ impl<D: Dim> Particles<D> {
 }
 
 /// Components in the order in which they are kept.
+#[inline(always)]
 pub(crate) fn components(stress: SymmetricTensor) -> [f64; 6] {
     let SymmetricTensor { xx, yy, zz, xy, yz, xz } = stress;
     [xx, yy, zz, xy, yz, xz]

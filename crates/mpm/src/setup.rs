@@ -20,14 +20,15 @@ pub enum ShapeFunctions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// Update stress last: strains from velocities at the end of the step. The least work; takes energy out of waves that the
-    /// step resolves poorly \[Bardenhagen2002\].
-    #[default]
+    /// step resolves poorly \[Bardenhagen2002\]. A node with little mass flies off and strains the particles around it, so only
+    /// short steps are stable.
     StressLast,
     /// Update stress first: strains from velocities at the start of the step, before forces are taken. Keeps energy, and may gain
     /// some \[Bardenhagen2002\].
     StressFirst,
     /// Modified update stress last: particles hand their new momenta to the nodes before strains are taken, so that nodes with
     /// little mass do not strain particles at random \[Sulsky1995\]. One more pass there and back.
+    #[default]
     ModifiedStressLast,
 }
 

@@ -31,6 +31,10 @@ fn within(node: f64, (low, high): (f64, f64)) -> f64 {
     node.max(low).min(high)
 }
 
+/// Share of a particle on the edge of a cell that the node beyond still gets: nothing to anyone but this node, which moves with the
+/// particle and does not strain it.
+const LEAST_SHARE: f64 = 1e-18;
+
 /// Hats.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Linear;
@@ -42,7 +46,7 @@ impl Shape for Linear {
     #[inline(always)]
     fn shares(at: f64, _width: f64, bounds: (f64, f64)) -> Shares {
         let first = within(at.floor(), bounds);
-        let past = at - first;
+        let past = (at - first).max(LEAST_SHARE);
         Shares { first, value: [1.0 - past, past, 0.0], slope: [-1.0, 1.0, 0.0] }
     }
 }
@@ -161,5 +165,6 @@ mod tests {
         let shares = QuadraticBspline::shares(f64::NAN, 1.0, BOUNDS);
         assert_eq!(shares.first, BOUNDS.0);
         assert!(shares.value[0].is_nan());
+        assert_eq!(Linear::shares(2.0, 1.0, BOUNDS).value, [1.0, LEAST_SHARE, 0.0]);
     }
 }

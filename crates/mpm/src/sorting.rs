@@ -48,9 +48,14 @@ impl<D: Dim> Sorting<D> {
         for &position in &particles.position {
             let (block, _) = grid.lattice.find(position);
             // Neighbours in memory are mostly in one block.
-            if self.homes.last() != Some(&block) {
-                self.homes.push(block);
+            if self.homes.last() == Some(&block) {
+                continue;
             }
+            if self.homes.len() == self.homes.capacity() {
+                self.homes.sort_unstable();
+                self.homes.dedup();
+            }
+            self.homes.push(block);
         }
         self.homes.sort_unstable();
         self.homes.dedup();

@@ -2,25 +2,27 @@
 
 use crate::batch::{BATCH, Batch};
 use crate::body::Pass;
+use crate::grid::grow;
 use crate::layout::{LONGEST_TRAVEL, Node, block_cells};
 use crate::motion::{Plan, Watch};
 use crate::mpm::Mpm;
-use crate::nodes::{Touch, keep_out, meet};
+use crate::nodes::{Meeting, Touch};
 use crate::particles::{Changing, Cut, Parts};
 use crate::setup::Scheme;
 use crate::wall::Wall;
 use granular_core::{Dim, Linear, PerBlock, StepError, Vector};
 
-/// Mass below which a node counts as empty, over that of the heaviest particle: its momentum and force are left out with it.
-const LEAST_MASS: f64 = 1e-12;
+/// Mass below which a node counts as empty, over that of the heaviest particle: momentum and force are left out with it. A particle on the
+/// edge of a cell gives far more to the node beyond, see [`Linear`](crate::shape::Linear).
+const LEAST_MASS: f64 = 1e-60;
 
 /// What nodes do with what particles gave them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// Forces act: the velocity after the step, and what it changed by.
     Accelerate,
-    /// The velocity as it is, as the first or second vector.
-    Velocity(usize),
+    /// The velocity as it is, as the first or second vector; what walls do is found anew from forces, or known.
+    Velocity(usize, bool),
 }
 
 impl<D: Dim> Mpm<D> {
@@ -59,8 +61,8 @@ impl<D: Dim> Mpm<D> {
     }
 
     fn stress_first(&mut self, plan: &Plan) -> Watch {
-        self.give(false);
-        self.answer(plan.dt, Answer::Velocity(0));
+        self.give(true);
+        self.answer(plan.dt, Answer::Velocity(0, true));
         let strained = self.take(&Plan { strain: Some(0), ..*plan });
         self.give(true);
         self.answer(plan.dt, Answer::Accelerate);
@@ -72,7 +74,7 @@ impl<D: Dim> Mpm<D> {
         self.answer(plan.dt, Answer::Accelerate);
         let moved = self.take(&Plan { velocity: true, ..*plan });
         self.give(false);
-        self.answer(plan.dt, Answer::Velocity(1));
+        self.answer(plan.dt, Answer::Velocity(1, false));
         moved.join(self.take(&Plan { position: true, strain: Some(1), ..*plan }))
     }
 
@@ -81,6 +83,7 @@ impl<D: Dim> Mpm<D> {
         let Self { grid, groups, particles, tiles, kernels, .. } = self;
         let (blocks, per_cell) = (grid.tile_blocks(), 1.0 / grid.lattice.cell);
         let force = force.then_some(per_cell);
+        grow(tiles, grid.tile_nodes());
         tiles.resize(grid.tile_nodes(), Node::ZERO);
         for (k, group) in groups.iter().enumerate() {
             blocks.for_each(&mut tiles[..], |home, tile| {
@@ -112,7 +115,6 @@ impl<D: Dim> Mpm<D> {
             local_damping: options.local_damping,
             least_mass: LEAST_MASS * *heaviest,
             walls,
-            ledger: options.ledger,
         };
         let (mut sums, mut motion) = (std::mem::take(&mut grid.sums), std::mem::take(&mut grid.motion));
         let blocks = grid.node_blocks();
@@ -123,7 +125,7 @@ impl<D: Dim> Mpm<D> {
             grid.collect(block, tiles, sums);
             match answer {
                 Answer::Accelerate => damped.0[0] = rule.accelerate(sums, motion, touches.items),
-                Answer::Velocity(vector) => rule.velocity(sums, motion, touches.items, vector),
+                Answer::Velocity(vector, anew) => rule.velocity(sums, motion, touches.items, (vector, anew)),
             }
         });
         (grid.sums, grid.motion) = (sums, motion);
@@ -229,64 +231,79 @@ struct NodeRule<'a, D: Dim> {
     local_damping: f64,
     least_mass: f64,
     walls: &'a [Wall<D>],
-    ledger: bool,
 }
 
 impl<D: Dim> NodeRule<'_, D> {
+    /// Mean velocity of what is on a node, and its change by forces; none on an empty node.
+    fn mean(&self, sum: &Node) -> Option<(D::Vec, D::Vec)> {
+        let mass = sum.0[0];
+        if mass <= self.least_mass {
+            return None;
+        }
+        let per_mass = 1.0 / mass;
+        let mean = D::Vec::from_fn(|axis| sum.0[1 + axis] * per_mass);
+        let force = D::Vec::from_fn(|axis| sum.0[1 + D::N + axis] * per_mass) + self.gravity;
+        Some((mean, force * self.dt))
+    }
+
     /// Forces act, then walls. Returns what local damping took.
     fn accelerate(&self, sums: &[Node], motion: &mut [Node], touches: &mut [Touch<D>]) -> f64 {
         let mut damped = 0.0;
-        for touch in &mut *touches {
-            touch.rest();
-        }
+        touches.iter_mut().for_each(Touch::rest);
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let touches = touching.of(node, touches);
-            let mass = sum.0[0];
-            if mass <= self.least_mass {
+            let mut meeting =
+                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let Some((mean, change)) = self.mean(sum) else {
                 *motion = Node::ZERO;
                 continue;
-            }
-            let per_mass = 1.0 / mass;
-            let before = D::Vec::from_fn(|axis| sum.0[1 + axis] * per_mass);
-            let mut force = D::Vec::from_fn(|axis| sum.0[1 + D::N + axis] * per_mass) + self.gravity;
+            };
+            let (before, mut after) = meeting.act(mean, change);
             if self.local_damping > 0.0 {
-                let resisting = D::Vec::from_fn(|axis| {
-                    -self.local_damping * force.component(axis).abs() * sign(before.component(axis))
-                });
-                force += resisting;
-                if self.ledger {
-                    damped -= mass * self.dt * resisting.dot(before + force * (0.5 * self.dt));
-                }
+                let resisting = self.resisting(after - before, before);
+                after = meeting.act(mean, change + resisting).1;
+                damped -= sum.0[0] * resisting.dot((before + after) * 0.5);
             }
-            let mut after = before + force * self.dt;
-            if !touches.is_empty() {
-                after = meet(touches, self.walls, mass, after);
-            }
-            for axis in 0..D::N {
-                motion.0[axis] = after.component(axis);
-                motion.0[D::N + axis] = (after - before).component(axis);
-            }
+            put::<D>(motion, 0, after);
+            put::<D>(motion, 1, after - before);
         }
         damped
     }
 
-    /// The velocity as it is, out of walls.
-    fn velocity(&self, sums: &[Node], motion: &mut [Node], touches: &[Touch<D>], vector: usize) {
+    /// Local damping: a share of the change of velocity, which walls have had their part in, against the velocity.
+    fn resisting(&self, change: D::Vec, velocity: D::Vec) -> D::Vec {
+        D::Vec::from_fn(|axis| {
+            -self.local_damping * change.component(axis).abs() * sign(velocity.component(axis))
+        })
+    }
+
+    /// The velocity of what is on nodes now, with what walls do in this step; `anew` finds what they do.
+    fn velocity(
+        &self,
+        sums: &[Node],
+        motion: &mut [Node],
+        touches: &mut [Touch<D>],
+        (vector, anew): (usize, bool),
+    ) {
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let range = touching.range(node, touches);
-            let mass = sum.0[0];
-            let mut now = D::Vec::ZERO;
-            if mass > self.least_mass {
-                let per_mass = 1.0 / mass;
-                now = D::Vec::from_fn(|axis| sum.0[1 + axis] * per_mass);
-                now = keep_out(&touches[range], self.walls, now);
-            }
-            for axis in 0..D::N {
-                motion.0[vector * D::N + axis] = now.component(axis);
-            }
+            let mut meeting =
+                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let now = self.mean(sum).map_or(D::Vec::ZERO, |(mean, change)| {
+                if anew {
+                    meeting.act(mean, change);
+                }
+                meeting.hold(mean)
+            });
+            put::<D>(motion, vector, now);
         }
+    }
+}
+
+/// Puts one of the vectors of a node.
+fn put<D: Dim>(node: &mut Node, vector: usize, value: D::Vec) {
+    for axis in 0..D::N {
+        node.0[vector * D::N + axis] = value.component(axis);
     }
 }
 
@@ -296,15 +313,10 @@ struct Touching {
 }
 
 impl Touching {
-    fn range<D: Dim>(&mut self, node: usize, touches: &[Touch<D>]) -> std::ops::Range<usize> {
+    fn of<'a, D: Dim>(&mut self, node: usize, touches: &'a mut [Touch<D>]) -> &'a mut [Touch<D>] {
         let from = self.from;
         self.from += touches[from..].iter().take_while(|touch| touch.node as usize == node).count();
-        from..self.from
-    }
-
-    fn of<'a, D: Dim>(&mut self, node: usize, touches: &'a mut [Touch<D>]) -> &'a mut [Touch<D>] {
-        let range = self.range(node, touches);
-        &mut touches[range]
+        &mut touches[from..self.from]
     }
 }
 

@@ -1,6 +1,6 @@
 //! The contract of every solver, for every combination of choices that has its own kernel or its own pass.
 
-use crate::sample::{falling, tumbling};
+use crate::sample::{falling, flowing, tumbling};
 use granular_core::{D2, D3, contract_tests};
 use granular_mpm::{ObjectiveRate, Options, Scheme, ShapeFunctions, VelocityUpdate};
 
@@ -22,32 +22,37 @@ const STEP: f64 = 1.25e-3;
 
 contract_tests!(
     linear_stress_last,
-    || tumbling::<D2>(with(ShapeFunctions::Linear, Scheme::StressLast), 2.0),
-    STEP
+    || flowing::<D2>(with(ShapeFunctions::Linear, Scheme::StressLast), 1.0),
+    0.5 * STEP,
+    warm_up = 1200
 );
 contract_tests!(
     linear_modified,
     || tumbling::<D2>(with(ShapeFunctions::Linear, Scheme::ModifiedStressLast), 2.0),
-    STEP
+    STEP,
+    warm_up = 1800
 );
 contract_tests!(
     blocks_stress_first,
     || tumbling::<D2>(with(ShapeFunctions::UniformGimp, Scheme::StressFirst), 2.0),
-    STEP
+    STEP,
+    warm_up = 1800
 );
 contract_tests!(
     splines_modified,
     || tumbling::<D2>(with(ShapeFunctions::QuadraticBspline, Scheme::ModifiedStressLast), 2.0),
-    STEP
+    STEP,
+    warm_up = 1800
 );
 contract_tests!(damped_among_walls, || falling::<D2>(damped(), 1.0), 0.5 * STEP);
 contract_tests!(
     blocks_in_space,
-    || falling::<D3>(with(ShapeFunctions::UniformGimp, Scheme::StressLast), 0.6),
+    || flowing::<D3>(with(ShapeFunctions::UniformGimp, Scheme::StressLast), 0.6),
     0.5 * STEP
 );
 contract_tests!(
     linear_in_space,
     || tumbling::<D3>(with(ShapeFunctions::Linear, Scheme::ModifiedStressLast), 0.7),
-    STEP
+    STEP,
+    warm_up = 1800
 );

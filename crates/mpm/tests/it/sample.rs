@@ -1,8 +1,8 @@
 //! Bodies that tests share.
 
-use granular_constitutive::LinearElastic;
+use granular_constitutive::{LinearElastic, MohrCoulomb, Strength};
 use granular_core::{Dim, Linear, Vector};
-use granular_mpm::{Condition, Mpm, Options, Particle, Scheme, Setup, ShapeFunctions, Wall};
+use granular_mpm::{BodyLaw, Condition, Mpm, Options, Particle, Scheme, Setup, ShapeFunctions, Wall};
 
 pub(crate) const SHAPES: [ShapeFunctions; 3] =
     [ShapeFunctions::Linear, ShapeFunctions::UniformGimp, ShapeFunctions::QuadraticBspline];
@@ -30,18 +30,26 @@ pub(crate) fn tumbling<D: Dim>(options: Options, side: f64) -> Mpm<D> {
 
 /// A soft column that falls on a rough floor beside a wall.
 pub(crate) fn falling<D: Dim>(options: Options, side: f64) -> Mpm<D> {
+    falling_of(LinearElastic::new(5e4, 0.3).unwrap(), options, side)
+}
+
+/// Dry grains that fall likewise.
+pub(crate) fn flowing<D: Dim>(options: Options, side: f64) -> Mpm<D> {
+    let elastic = LinearElastic::new(5e4, 0.3).unwrap();
+    falling_of(MohrCoulomb::new(elastic, Strength::of_friction(0.5)).unwrap(), options, side)
+}
+
+fn falling_of<D: Dim>(law: impl Into<BodyLaw<D>>, options: Options, side: f64) -> Mpm<D> {
     let up = D::Vec::along(D::UP, 1.0);
     let floor = Wall::plane("floor", D::Vec::ZERO, up, Condition::frictional(0.4)).unwrap();
     let left = Wall::plane("left", D::Vec::ZERO, D::Vec::along(0, 1.0), Condition::Slip).unwrap();
     let setup = Setup { gravity: up * -9.81, walls: vec![floor, left], options, ..Setup::new(0.1) };
     let mut mpm = Mpm::new(setup).unwrap();
-    let law = LinearElastic::new(5e4, 0.3).unwrap();
     let high = D::Vec::splat(side) + up * side;
-    let particles = Particle::<D>::filling(D::Vec::ZERO, high, 0.05);
-    let moving: Vec<_> = particles
-        .iter()
-        .map(|particle| particle.moving(D::Vec::along(0, 1.0 + particle.position.component(D::UP))))
-        .collect();
-    mpm.body(law, 1000.0, &moving).unwrap();
+    let mut particles = Particle::<D>::filling(D::Vec::ZERO, high, 0.05);
+    for particle in &mut particles {
+        particle.velocity = D::Vec::along(0, 1.0 + particle.position.component(D::UP));
+    }
+    mpm.body(law, 1000.0, &particles).unwrap();
     mpm
 }

@@ -126,24 +126,24 @@ fn continuum<D: Dim>(
         return None;
     };
     let place = format!("continua.{}", quoted(material));
-    let law = AnyLaw::try_from(&spec.law).map_err(|error| {
-        problems.add(format!("{place}.law"), format!("refused: {error}"), error.allowed, "");
-    });
     // Grains fill a share of the outline.
     let of_grains = || Some(materials::density_of_grains(scene, material)? * outline?.solid::<D>());
-    let density = spec.density.map(|density| density.value()).or_else(of_grains);
-    match density {
-        Some(density) if density > 0.0 => law.ok().map(|law| (law, density)),
+    let density = match spec.density.map(|density| density.value()).or_else(of_grains) {
+        Some(density) if density > 0.0 => density,
         Some(density) => {
             problems.add(format!("{place}.density"), density, "a positive density", "");
-            None
+            return None;
         }
         None => {
             let hint = "that of the bulk; where the sample is of grains it follows from theirs";
             problems.add(format!("{place}.density"), "missing", "a positive density", hint);
-            None
+            return None;
         }
-    }
+    };
+    let law = AnyLaw::from_spec(&spec.law, density).map_err(|error| {
+        problems.add(format!("{place}.law"), format!("refused: {error}"), error.allowed, "");
+    });
+    Some((law.ok()?, density))
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
