@@ -10,8 +10,8 @@ fn a_report_of_two_cases_has_their_rows_and_says_how_it_came_about() {
     let rows = outcome.json();
     let rows = rows.as_array().unwrap();
     let page = fs::read_to_string(scratch.path("page.md")).unwrap();
-    assert!(page.starts_with("# What is measured\n\nWritten by `granular validate _on_incline --report page.md`"));
-    for part in ["commit `", "threads", "**quick form**", "contains `_on_incline`", "## Overview"] {
+    let command = "- Command: `granular validate _on_incline --report page.md`\n";
+    for part in [command, "commit `", "threads", "- Form: quick", "contains `_on_incline`", "## Overview"] {
         assert!(page.contains(part), "{part} is not in\n{page}");
     }
     let headings: Vec<&str> = page.lines().filter(|line| line.starts_with("##")).collect();
@@ -26,7 +26,8 @@ fn a_report_of_two_cases_has_their_rows_and_says_how_it_came_about() {
         assert_eq!(metric.trim(), row["metric"].as_str().unwrap());
         assert!(line.contains("| pass |"), "{line}");
     }
-    let left: Vec<_> = fs::read_dir(scratch.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(scratch.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["page.md"], "nothing else is left behind");
 }
 

@@ -126,7 +126,8 @@ fn sources() -> Vec<(PathBuf, String)> {
 #[test]
 fn only_the_folders_of_methods_name_their_crates() {
     let mut found = Vec::new();
-    for (path, text) in files_below(&["crates/driver/src", "crates/studies/src", "crates/granular/src"], "rs") {
+    for (path, text) in files_below(&["crates/driver/src", "crates/studies/src", "crates/granular/src"], "rs")
+    {
         let is_method = path.components().any(|part| part.as_os_str() == "methods");
         if !is_method && METHODS.iter().any(|name| text.contains(name)) {
             found.push(shown(&path));

@@ -58,7 +58,8 @@ impl Report<'_> {
     /// The page.
     pub fn page(&self) -> String {
         let links = Links::from(self.path);
-        let mut text = self.head(&links);
+        let mut text = self.origin();
+        text += &Self::legend(&links);
         text += &self.overview();
         text += &self.disagreements();
         for method in METHODS {
@@ -80,36 +81,41 @@ impl Report<'_> {
         blocks.filter_map(|rows| Some((all().find(|case| case.name == rows[0].case)?, rows)))
     }
 
-    /// Where the numbers come from and how to read them.
-    fn head(&self, links: &Links) -> String {
+    /// Where the numbers come from.
+    fn origin(&self) -> String {
         let facts = folder::provenance();
         let fact = |name: &str| facts[name].as_str().unwrap_or("unknown").to_owned();
         let form = match self.effort {
-            Effort::Full => "This is the **complete form** of the cases.",
+            Effort::Full => "complete",
             Effort::Quick => {
-                "This is the **quick form** of the cases: small samples, seconds a case. Claims that take more grains than were run are \
-                 not judged (*small*); `--full` runs as many as they take."
+                "quick: small samples, seconds a case; claims that take more grains than were run are not judged (*small*), \
+                 and `--full` runs as many as they take"
             }
         };
-        let only = self
-            .filter
-            .map_or(String::new(), |filter| format!(" Only cases whose name contains `{filter}`."));
-        let guide = links.to("docs/evidence.md").map_or(String::new(), |link| {
-            format!(" [What the numbers are worth]({link}) has more, with what is not validated.")
-        });
+        let only = |filter| format!("\n- Cases: those whose name contains `{filter}`");
         format!(
-            "# What is measured\n\nWritten by `{}` (version {}, commit `{}`) on {}, {}, {} threads; not edited by \
-             hand. {form}{only}\n\n\
-             Each row is a number that was measured beside what it should be. The error is the distance from the reference, over the \
-             reference unless it says *abs.*; a row passes where the error is at most the tolerance. **Required** rows *pass*, or \
-             the validation has **FAILED**. **Claims** of the literature are *met* or the result *differs*, which fails nothing; notes \
-             say why.{guide}\n",
+            "# What is measured\n\nWritten by the command below; not edited by hand.\n\n- Command: `{}`\n\
+             - Program: version {}, commit `{}`\n- Machine: {}, {}, {} threads\n- Form: {form}{}\n",
             self.command(),
             fact("version"),
             fact("commit"),
             fact("cpu"),
             fact("target"),
             facts["threads"],
+            self.filter.map_or(String::new(), only),
+        )
+    }
+
+    /// How to read the numbers.
+    fn legend(links: &Links) -> String {
+        let guide = links.to("docs/evidence.md").map_or(String::new(), |link| {
+            format!(" [What the numbers are worth]({link}) has more, with what is not validated.")
+        });
+        format!(
+            "\nEach row is a number that was measured beside what it should be. The error is the distance from the reference, over \
+             the reference unless it says *abs.* or the note says otherwise. A row passes where its error is at most its tolerance. \
+             **Required** rows *pass*, or the validation has **FAILED**. **Claims** of the literature are *met*, or the result \
+             *differs*, which fails nothing.{guide}\n"
         )
     }
 

@@ -41,7 +41,7 @@ fn failures_come_first_and_claims_say_what_they_are() {
     let page = page(&rows.finish(), Effort::Full);
     let (head, rest) = page.split_once("## What does not agree").unwrap();
     assert!(
-        head.contains("**complete form**")
+        head.contains("\n- Form: complete\n")
             && head.contains("granular validate --full --report /somewhere/page.md`")
     );
     assert!(head.contains("| **0 of 1** | **0 of 1**, 1 small |"), "{head}");
@@ -57,7 +57,7 @@ fn the_page_says_what_was_asked_for() {
     let path = Path::new("/somewhere/page.md");
     let text = Report { effort: Effort::Quick, filter: Some("grad"), path, rows: &[] }.page();
     assert!(text.contains("`granular validate grad --report /somewhere/page.md`"), "{text}");
-    assert!(text.contains("**quick form**") && text.contains("whose name contains `grad`"), "{text}");
+    assert!(text.contains("- Form: quick") && text.contains("whose name contains `grad`"), "{text}");
 }
 
 #[test]
