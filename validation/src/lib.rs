@@ -1,4 +1,4 @@
-//! Reference data of the validation cases, as the text of CSV files.
+//! Reference data of the validation cases, as the text of CSV files, and what each case says of itself.
 //!
 //! Data live in a package of their own so that `cargo package` finds them. Each case has a folder
 //! with a `README.md` that states source, set-up, tier of evidence and weakness.
@@ -47,3 +47,23 @@ pub const PACKING_DENSITY: &str = include_str!("../packing_density/reference.csv
 pub const TESSELLATION: &str = include_str!("../tessellation/reference.csv");
 /// What the thesis says of piles that are pushed.
 pub const SLOPE_IMPACT: &str = include_str!("../slope_impact/reference.csv");
+
+/// What a case compares with, how, and what that is worth: its `README.md`.
+pub fn readme(case: &str) -> Option<&'static str> {
+    README.iter().find(|(name, _)| *name == case).map(|(_, text)| *text)
+}
+
+macro_rules! readmes {
+    ($($case:ident)+) => {
+        &[$((stringify!($case), include_str!(concat!("../", stringify!($case), "/README.md"))),)+]
+    };
+}
+
+const README: &[(&str, &str)] = readmes! {
+    ball_on_incline bouncing_ball carried_disk cavity chain_waves chung_ooi coarse_graining column_density
+    column_runout column_studies contact_time couette critical_state cylinder disk_in_channel
+    disk_on_incline energy_balance flat_surface fluid_mass grading hertz_impact hydrostatic lattice_moduli
+    momentum moving_walls oblique_impact packing_density periodic_cell poiseuille regular_packings
+    restitution rotating_frame sample_densities sliding_to_rolling slope_impact square_array taylor_green
+    tessellation vortex_street wall_forces wall_in_channel womersley
+};

@@ -1,62 +1,85 @@
 //! Benchmarks: error against run time, and speed.
 //!
-//! [`precision`] studies measure how the error of a case falls with what a run costs; they give a
-//! [`Study`] with its Pareto front and fitted orders. [`speed`] measures how many grain-steps a
-//! second grains take, [`lattice`] how many cell updates a fluid, [`tessellate`] how many cells of Voronoi diagrams;
-//! [`operators`] puts collision operators side by side.
+//! A [`Precision`] study measures how the error of a case falls with what a run costs; it gives a [`Study`] with its Pareto
+//! front and fitted orders. [`speed`] measures how many steps of grains, cell updates or Voronoi cells a second brings. A
+//! [`Comparison`] puts variants of a method side by side. All belong to [methods](crate::METHODS).
 
-mod cells;
-mod column;
 mod figure;
-mod flows;
-mod hertz;
-pub mod lattice;
-pub mod operators;
-mod restitution;
-mod settling;
 pub mod speed;
-mod state;
-mod study;
-pub mod tessellate;
-mod triad;
+pub(crate) mod study;
+pub(crate) mod triad;
 
+pub use speed::Throughput;
 pub use study::{Point, Study};
 
+use crate::METHODS;
 use granular_driver::failure::Failure;
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// A work-precision study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Precision {
-    /// Restitution of a normal impact over the step, for both treatments of tension.
-    Restitution,
-    /// The same for elastic disks and spheres with damping.
-    Hertz,
-    /// Run-out of a column over stiffness and step, as a mean over seeds; takes minutes.
-    Column,
-    /// Areas of Voronoi cells: a raster, exact cells, an estimate from a grid; takes seconds.
-    Cells,
-    /// Decaying vortices over cells, Mach number, operator and storage; takes a minute.
-    TaylorGreen,
-    /// Lid-driven cavity over the same; takes one to two minutes.
-    Cavity,
-    /// Unsteady cylinder of Schaefer and Turek over the same; takes five to eight minutes on two cores.
-    SchaeferTurek,
+#[derive(Clone, Copy, Debug)]
+pub struct Precision {
+    /// Name.
+    pub name: &'static str,
+    /// What is measured, and how long it takes where that is long.
+    pub about: &'static str,
+    pub(crate) run: fn() -> Result<Study, Failure>,
 }
 
-/// Runs a study.
-///
-/// # Errors
-/// When a run fails.
-pub fn precision(case: Precision) -> Result<Study, Failure> {
-    match case {
-        Precision::Restitution => restitution::study(),
-        Precision::Hertz => hertz::study(),
-        Precision::Column => column::study(),
-        Precision::Cells => cells::study(),
-        Precision::TaylorGreen => flows::taylor_green(),
-        Precision::Cavity => flows::cavity(),
-        Precision::SchaeferTurek => flows::schaefer_turek(),
+/// Variants of a method side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Comparison {
+    /// Name.
+    pub name: &'static str,
+    /// What is compared, and how long it takes.
+    pub about: &'static str,
+    pub(crate) run: fn() -> Result<Printed, Failure>,
+}
+
+/// What a bench found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Printed {
+    /// For programs.
+    pub json: Value,
+    /// For people.
+    pub text: String,
+}
+
+impl Printed {
+    pub(crate) fn new(found: &impl Serialize, text: String) -> Self {
+        Self { json: json!(found), text }
+    }
+}
+
+/// All studies of precision.
+pub fn precision() -> impl Iterator<Item = &'static Precision> {
+    METHODS.iter().flat_map(|method| method.precision)
+}
+
+/// All comparisons.
+pub fn comparisons() -> impl Iterator<Item = &'static Comparison> {
+    METHODS.iter().flat_map(|method| method.comparisons)
+}
+
+impl Precision {
+    /// Runs the study.
+    ///
+    /// # Errors
+    /// When a run fails.
+    pub fn run(&self) -> Result<Study, Failure> {
+        (self.run)()
+    }
+}
+
+impl Comparison {
+    /// Runs the comparison.
+    ///
+    /// # Errors
+    /// When a run fails.
+    pub fn run(&self) -> Result<Printed, Failure> {
+        (self.run)()
     }
 }
 

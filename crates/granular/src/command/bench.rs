@@ -1,11 +1,14 @@
 //! `granular bench`.
 
 use super::{Common, show};
-use clap::{Args, Subcommand, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgMatches, Args, FromArgMatches, Subcommand, value_parser};
 use granular_driver::failure::Failure;
 use granular_driver::machine;
-use granular_studies::bench::{self, Precision, lattice, operators, speed, tessellate};
+use granular_studies::METHODS;
+use granular_studies::bench::{self, Printed, speed};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What `granular bench` measures.
@@ -14,45 +17,33 @@ pub(super) enum Bench {
     /// Error against run time, as a table and a figure.
     Precision {
         /// Study.
-        case: Precision,
+        #[arg(value_parser = studies())]
+        case: String,
         /// Folder for the figure and the points; `bench/<case>` by default.
         #[arg(short, long, value_name = "FOLDER")]
         out: Option<PathBuf>,
     },
-    /// Collision operators side by side: walls, pores, free flow, moving frames, cost; takes a minute.
-    Operators,
+    #[command(flatten)]
+    Compare(Comparison),
     /// Steps per second over sizes and threads.
     Speed {
         /// Solver.
-        solver: Solver,
+        #[arg(value_parser = solvers())]
+        solver: String,
         #[command(flatten)]
         flags: Speed,
     },
 }
 
-/// Solvers.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Solver {
-    /// Discrete element method.
-    Dem,
-    /// Lattice Boltzmann method; takes 2 GB of memory.
-    Lbm,
-    /// Weighted Voronoi diagrams, on one thread; takes half a minute.
-    Tessellate,
-}
+/// One of the comparisons that methods bring.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Comparison(bench::Comparison);
 
 #[derive(Args, Debug)]
 #[group(id = "speed flags")]
 pub(super) struct Speed {
-    /// Numbers of disks in a collapsing column.
-    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "3000,13000,100000", value_name = "LIST")]
-    disks: Vec<usize>,
-    /// Numbers of spheres that settle in a box.
-    #[arg(long, num_args = 0.., value_delimiter = ',', default_value = "50000", value_name = "LIST")]
-    spheres: Vec<usize>,
-    /// Numbers of sites of a tessellation.
-    #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000,1000000", value_name = "LIST")]
-    sites: Vec<usize>,
+    #[command(flatten)]
+    sizes: Sizes,
     /// Numbers of threads; each has its own pool.
     #[arg(long, value_delimiter = ',', default_value = "1,2", value_name = "LIST")]
     pools: Vec<usize>,
@@ -68,53 +59,58 @@ pub(super) struct Speed {
     write_state: Option<PathBuf>,
 }
 
+/// Lists of sizes, each under the flag that its method gives it.
+#[derive(Debug)]
+struct Sizes(BTreeMap<String, Vec<usize>>);
+
+fn studies() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        bench::precision().map(|study| PossibleValue::new(study.name).help(study.about)),
+    )
+}
+
+fn solvers() -> PossibleValuesParser {
+    let timed = METHODS
+        .iter()
+        .filter_map(|method| method.speed.map(|speed| PossibleValue::new(method.name).help(speed.about)));
+    PossibleValuesParser::new(timed)
+}
+
 impl Bench {
     pub(super) fn execute(self, common: &Common) -> Result<(), Failure> {
-        match self {
-            Self::Precision { case, out } => {
-                let study = bench::precision(case)?;
-                let folder = out.unwrap_or_else(|| Path::new("bench").join(study.case));
-                bench::save(&study, &folder)?;
-                let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
-                show(common, &json!(study), || format!("{study}{files}"));
-            }
-            Self::Operators => {
-                let found = operators::operators()?;
-                show(common, &json!(found), || found.to_string());
-            }
+        let Printed { json, text } = match self {
+            Self::Precision { case, out } => precision(&case, out)?,
+            Self::Compare(Comparison(comparison)) => comparison.run()?,
             Self::Speed { solver, flags } => {
                 flags.refuse_many()?;
-                let Speed { disks, spheres, sites, pools: threads, repeats, state, write_state } = flags;
-                let speeds = match solver {
-                    Solver::Tessellate => {
-                        let rates = tessellate::tessellate(&sites, repeats)?;
-                        show(common, &json!(rates), || tessellate::table(&rates));
-                        return Ok(());
-                    }
-                    Solver::Dem => {
-                        speed::dem(&speed::Request { disks, spheres, threads, repeats, state, write_state })?
-                    }
-                    Solver::Lbm => lattice::lbm(&lattice::Request { threads, repeats })?,
-                };
-                show(common, &json!(speeds), || speed::table(&speeds));
+                let Speed { sizes: Sizes(sizes), pools: threads, repeats, state, write_state } = flags;
+                let request = speed::Request { sizes, threads, repeats, state, write_state };
+                speed::measure(&solver, &request)?
             }
-        }
+        };
+        show(common, &json, || text);
         Ok(())
     }
+}
+
+/// Runs a study of precision and writes its figure and points.
+fn precision(case: &str, out: Option<PathBuf>) -> Result<Printed, Failure> {
+    let study = bench::precision().find(|study| study.name == case);
+    let study = study.expect("the parser lets the names of studies pass").run()?;
+    let folder = out.unwrap_or_else(|| Path::new("bench").join(study.case));
+    bench::save(&study, &folder)?;
+    let files = format!("  figure: {0}.svg, {0}.png\n", folder.join("precision").display());
+    Ok(Printed { json: json!(study), text: format!("{study}{files}") })
 }
 
 impl Speed {
     /// Refuses what this machine has neither memory nor cores for.
     fn refuse_many(&self) -> Result<(), Failure> {
-        let counts = [
-            ("--disks", &self.disks, 700.0),
-            ("--spheres", &self.spheres, 1100.0),
-            ("--sites", &self.sites, 500.0),
-        ];
-        for (flag, list, bytes) in counts {
-            let largest = list.iter().copied().max().unwrap_or(0);
-            machine::room_for(largest as f64, bytes)
-                .map_err(|allowed| Failure::io(flag, format!("{largest}; allowed: {allowed}")))?;
+        for sizes in speed::sizes() {
+            let largest = self.sizes.0[sizes.flag].iter().copied().max().unwrap_or(0);
+            machine::room_for(largest as f64, sizes.bytes).map_err(|allowed| {
+                Failure::io(format!("--{}", sizes.flag), format!("{largest}; allowed: {allowed}"))
+            })?;
         }
         let most = machine::most_threads();
         match self.pools.iter().find(|&&threads| threads > most) {
@@ -123,5 +119,64 @@ impl Speed {
             }
             None => Ok(()),
         }
+    }
+}
+
+impl Args for Sizes {
+    fn augment_args(mut command: clap::Command) -> clap::Command {
+        for speed in METHODS.iter().filter_map(|method| method.speed) {
+            // Of several scenes some may be left out, by an empty list.
+            let may_be_empty = speed.sizes.len() > 1;
+            for sizes in speed.sizes {
+                let flag = Arg::new(sizes.flag).long(sizes.flag).help(sizes.about).value_name("LIST");
+                let flag = flag.value_parser(value_parser!(usize)).value_delimiter(',');
+                let flag = if may_be_empty { flag.num_args(0..) } else { flag };
+                command = command.arg(flag.action(clap::ArgAction::Append).default_value(sizes.default));
+            }
+        }
+        command
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Sizes {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let of = |flag: &str| matches.get_many(flag).into_iter().flatten().copied().collect();
+        Ok(Self(speed::sizes().map(|sizes| (sizes.flag.to_owned(), of(sizes.flag))).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Subcommand for Comparison {
+    fn augment_subcommands(command: clap::Command) -> clap::Command {
+        command.subcommands(bench::comparisons().map(|one| clap::Command::new(one.name).about(one.about)))
+    }
+
+    fn augment_subcommands_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        bench::comparisons().any(|one| one.name == name)
+    }
+}
+
+impl FromArgMatches for Comparison {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let found = bench::comparisons().find(|one| Some(one.name) == matches.subcommand_name());
+        let missing = || clap::Error::new(clap::error::ErrorKind::MissingSubcommand);
+        found.map(|one| Self(*one)).ok_or_else(missing)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
     }
 }

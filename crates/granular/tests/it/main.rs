@@ -21,6 +21,7 @@ mod command_snapshots;
 mod command_stability;
 mod command_stir;
 mod command_sweep;
+mod command_validate;
 mod fuzz;
 mod scenes;
 mod support;

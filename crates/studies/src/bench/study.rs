@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Resolution of grains.
-pub(super) const CONTACT: &str = "steps per contact";
+pub(crate) const CONTACT: &str = "steps per contact";
 
 /// Error and cost at one resolution.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -49,7 +49,7 @@ pub struct Study {
 
 impl Study {
     /// Marks the points that no other point of their problem beats.
-    pub(super) fn mark_front(mut self) -> Self {
+    pub(crate) fn mark_front(mut self) -> Self {
         let beats = |a: &Point, b: &Point| {
             let costs = [a, b].map(|point| (point.seconds, point.error));
             a.problem == b.problem && a.seconds <= b.seconds && a.error <= b.error && costs[0] != costs[1]
@@ -61,17 +61,17 @@ impl Study {
     }
 
     /// The problems in the order of the points.
-    pub(super) fn problems(&self) -> Vec<&str> {
+    pub(crate) fn problems(&self) -> Vec<&str> {
         in_order(self.points.iter().map(|point| point.problem.as_str()))
     }
 
     /// The schemes in the order of the points.
-    pub(super) fn schemes(&self) -> Vec<&str> {
+    pub(crate) fn schemes(&self) -> Vec<&str> {
         in_order(self.points.iter().map(|point| point.scheme.as_str()))
     }
 
     /// All points as CSV.
-    pub(super) fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         let mut text = "problem,scheme,resolution,dt [s],error,band,seeds,seconds,pareto\n".to_owned();
         for p in &self.points {
             let numbers = [p.resolution, p.dt, p.error, p.band, p.seeds as f64, p.seconds];

@@ -1,6 +1,5 @@
-//! Memory bandwidth of this machine, by the triad `a = b + s c`, and by an update in place.
+//! Memory bandwidth of this machine, by the triad `a = b + s c`.
 
-use granular_lbm::Pages;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -11,7 +10,7 @@ const ROUNDS: usize = 6;
 
 /// Bandwidth of the pool in use \[bytes/s\]: the best of some rounds, three numbers moved per
 /// element.
-pub(super) fn bandwidth() -> f64 {
+pub(crate) fn bandwidth() -> f64 {
     let (mut a, b, c) = (vec![0.0_f64; LENGTH], vec![1.0_f64; LENGTH], vec![2.0_f64; LENGTH]);
     let mut best = f64::INFINITY;
     for round in 0..ROUNDS {
@@ -26,24 +25,4 @@ pub(super) fn bandwidth() -> f64 {
     }
     assert!(a[LENGTH / 2] > 1.0, "the sum is kept, so that it is computed");
     (3 * LENGTH * size_of::<f64>()) as f64 / best
-}
-
-/// Bandwidth of the pool in use \[bytes/s\] for an update in place, the best pattern there is: one number read and
-/// written per element, in the pages that populations lie in.
-pub(super) fn update_bandwidth() -> f64 {
-    let mut a = Pages::<f64>::zeroed(3 * LENGTH);
-    a.fill(1.0);
-    let mut best = f64::INFINITY;
-    for round in 0..ROUNDS {
-        let factor = 0.5 + round as f64;
-        let begun = Instant::now();
-        a.par_chunks_mut(CHUNK).for_each(|a| {
-            for a in a {
-                *a = *a * 0.5 + factor;
-            }
-        });
-        best = best.min(begun.elapsed().as_secs_f64());
-    }
-    assert!(a[LENGTH / 2] > 0.5, "the result is kept, so that it is computed");
-    (6 * LENGTH * size_of::<f64>()) as f64 / best
 }

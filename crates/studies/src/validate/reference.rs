@@ -12,13 +12,13 @@ pub(crate) fn columns<const N: usize>(text: &str, names: [&str; N]) -> Vec<[f64;
 }
 
 /// The number in `column` of the row whose first cell is `name`.
-pub(super) fn named(text: &str, name: &str, column: &str) -> f64 {
+pub(crate) fn named(text: &str, name: &str, column: &str) -> f64 {
     let index = parts(text).1.position(|row| row.field(0) == Some(name));
     columns(text, [column])[index.expect("reference data has the rows of its case")][0]
 }
 
 /// The texts of a column, row by row.
-pub(super) fn named_texts(text: &str, column: &str) -> Vec<String> {
+pub(crate) fn named_texts(text: &str, column: &str) -> Vec<String> {
     let (header, rows) = parts(text);
     let place = place(&header, column);
     rows.map(|row| row.field(place).unwrap_or_default().to_owned()).collect()

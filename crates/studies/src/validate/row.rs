@@ -23,6 +23,21 @@ pub enum Tier {
     Thesis,
 }
 
+impl Tier {
+    /// What people call it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::ClosedForm => "closed form",
+            Self::Order => "order of convergence",
+            Self::Conservation => "conservation",
+            Self::Identity => "identity",
+            Self::Experiment => "experiment",
+            Self::OtherCode => "other code",
+            Self::Thesis => "thesis",
+        }
+    }
+}
+
 /// One measured number beside its reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -55,6 +70,30 @@ pub struct Row {
     pub note: String,
 }
 
+impl Row {
+    /// What there is to know but whether the error is absolute, and that.
+    pub(super) fn remark(&self) -> (&str, bool) {
+        match self.note.strip_prefix(ABSOLUTE) {
+            Some(rest) => (rest.trim_start_matches("; "), true),
+            None => (&self.note, false),
+        }
+    }
+
+    /// What became of it, in a word.
+    pub(super) fn verdict(&self) -> &'static str {
+        match (self.gate, self.pass) {
+            _ if !self.judged => "small",
+            (true, true) => "pass",
+            (true, false) => "FAILED",
+            (false, true) => "met",
+            (false, false) => "differs",
+        }
+    }
+}
+
+/// What notes say of errors that are not over their reference.
+const ABSOLUTE: &str = "absolute error";
+
 /// A measurement before it is a row.
 #[derive(Clone, Debug)]
 pub(crate) struct Measure {
@@ -65,7 +104,6 @@ pub(crate) struct Measure {
     error: f64,
     tolerance: f64,
     gate: bool,
-    solver: &'static str,
     note: String,
 }
 
@@ -79,7 +117,7 @@ impl Measure {
         tolerance: f64,
     ) -> Self {
         let (metric, note) = (metric.into(), String::new());
-        Self { tier, metric, value, reference, error, tolerance, gate: true, solver: "dem", note }
+        Self { tier, metric, value, reference, error, tolerance, gate: true, note }
     }
 
     /// Judged by the distance over the reference.
@@ -103,7 +141,7 @@ impl Measure {
         tolerance: f64,
     ) -> Self {
         let measure = Self::judged(tier, metric, [value, reference], (value - reference).abs(), tolerance);
-        measure.note("absolute error")
+        measure.note(ABSOLUTE)
     }
 
     /// With one more note.
@@ -119,25 +157,21 @@ impl Measure {
     pub(crate) fn claim(self) -> Self {
         Self { gate: false, ..self }
     }
-
-    /// Measured on something other than the discrete element method.
-    pub(crate) fn of(self, solver: &'static str) -> Self {
-        Self { solver, ..self }
-    }
 }
 
 /// Collects the rows of a case, and the wall time of each.
 #[derive(Debug)]
 pub(crate) struct Rows {
     case: &'static str,
+    solver: &'static str,
     rows: Vec<Row>,
     lap: Instant,
     judges_claims: bool,
 }
 
 impl Rows {
-    pub(crate) fn new(case: &'static str) -> Self {
-        Self { case, rows: Vec::new(), lap: Instant::now(), judges_claims: true }
+    pub(crate) fn new(case: &'static str, solver: &'static str) -> Self {
+        Self { case, solver, rows: Vec::new(), lap: Instant::now(), judges_claims: true }
     }
 
     /// From here on so many grains are run, and a claim takes so many as `needed` to be judged by them.
@@ -146,12 +180,12 @@ impl Rows {
     }
 
     pub(crate) fn add(&mut self, measure: Measure) {
-        let Measure { tier, metric, value, reference, error, tolerance, gate, solver, note } = measure;
+        let Measure { tier, metric, value, reference, error, tolerance, gate, note } = measure;
         let seconds = self.lap.elapsed().as_secs_f64();
         self.lap = Instant::now();
         // Not a number passes nothing.
         let pass = error <= tolerance;
-        let case = self.case;
+        let (case, solver) = (self.case, self.solver);
         self.rows.push(Row {
             case,
             solver,

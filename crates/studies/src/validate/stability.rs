@@ -9,61 +9,72 @@
 //! - a run that keeps all bounds finishes.
 //!
 //! ```
-//! use granular_studies::validate::stability::{Request, lbm, verdict};
-//! use granular_studies::validate::Effort;
-//! let rows = lbm(&Request { effort: Effort::Quick, operators: vec!["regularised".to_owned()], flows: vec!["cavity".to_owned()] })?;
+//! use granular_studies::validate::stability::{Request, limits, verdict};
+//! let request = Request::default().choose("operator", &["regularised"]).choose("flow", &["cavity"]);
+//! let rows = limits("lbm", &request)?;
 //! verdict(&rows)?;
 //! # Ok::<(), granular_driver::failure::Failure>(())
 //! ```
 
-mod dem;
-mod flows;
-mod judge;
-mod search;
+pub(crate) mod judge;
+pub(crate) mod search;
 mod show;
-mod watch;
+pub(crate) mod watch;
 
-pub use dem::dem;
 pub use show::table;
 
 use super::Effort;
-use flows::{Geometry, Start, State};
-use granular_core::{Limits, Solver};
+use crate::METHODS;
 use granular_driver::failure::Failure;
-use granular_driver::parallel;
-use granular_lbm::Operator;
-use judge::Swept;
-use search::{Found, Range};
 use serde::Serialize;
-use watch::watch;
+use std::collections::BTreeMap;
 
-/// Collision operators by name.
-pub const OPERATORS: [(&str, Operator); 5] = [
-    ("single", Operator::SingleRelaxation),
-    ("two", Operator::TwoRelaxation { magic: 3.0 / 16.0 }),
-    ("multiple", Operator::EXACT_WALLS),
-    ("kumar", Operator::KUMAR),
-    ("regularised", Operator::Regularised),
-];
+/// A study of the limits of a method.
+#[derive(Clone, Copy, Debug)]
+pub struct Stability {
+    /// What may be chosen among; all of it by default.
+    pub choices: &'static [Choice],
+    pub(crate) run: fn(&Request) -> Result<Vec<Row>, Failure>,
+}
 
-/// Flows by name: two shear layers in a periodic box, a cavity under a lid, and a jet that enters through a velocity
-/// face and leaves at given pressure, with faces after Zou and He and with regularised ones.
-pub const FLOWS: [&str; 4] = ["shear-layer", "cavity", "jet", "regularised-jet"];
-
-/// Constant of the Smagorinsky closure where it is on.
-pub const SMAGORINSKY: f64 = 0.1;
-/// Mach number of the sweeps over relaxation time and over the grid Reynolds number.
-const MACH: [f64; 2] = [0.05, 0.17];
+/// What a study may be narrowed down to.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Name of its flag, in the singular.
+    pub flag: &'static str,
+    /// What is chosen, such as "Collision operators".
+    pub about: &'static str,
+    /// Names to choose among.
+    pub names: &'static [&'static str],
+}
 
 /// What to study.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// How fine.
     pub effort: Effort,
-    /// Names among [`OPERATORS`]; all when empty.
-    pub operators: Vec<String>,
-    /// Names among [`FLOWS`]; all when empty.
-    pub flows: Vec<String>,
+    /// Chosen names by the flag of their [`Choice`]; all when there are none.
+    pub chosen: BTreeMap<String, Vec<String>>,
+}
+
+impl Request {
+    /// The same with these names chosen for a flag.
+    pub fn choose(mut self, flag: &str, names: &[&str]) -> Self {
+        self.chosen.insert(flag.to_owned(), names.iter().map(|name| (*name).to_owned()).collect());
+        self
+    }
+
+    /// Whether a name is among those chosen.
+    pub(crate) fn wants(&self, flag: &str, name: &str) -> bool {
+        let chosen = self.chosen.get(flag).map_or(&[][..], Vec::as_slice);
+        chosen.is_empty() || chosen.iter().any(|other| other == name)
+    }
+
+    /// Flags for which something is chosen.
+    fn flags(&self) -> impl Iterator<Item = (&str, &[String])> {
+        let flags = self.chosen.iter().map(|(flag, names)| (flag.as_str(), names.as_slice()));
+        flags.filter(|(_, names)| !names.is_empty())
+    }
 }
 
 /// What lies beyond a limit.
@@ -98,206 +109,47 @@ pub struct Row {
     pub fault: Option<String>,
 }
 
-/// What is swept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Parameter {
-    /// Down to 1/2 + 1e-4.
-    SmallTau,
-    /// Up to 5.
-    LargeTau,
-    /// Up to 1, with the least viscosity that the solver allows.
-    Mach,
-    /// Up to 1000.
-    GridReynolds,
-}
-
-impl Parameter {
-    const ALL: [Self; 4] = [Self::SmallTau, Self::LargeTau, Self::Mach, Self::GridReynolds];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::SmallTau => "smallest relaxation time, Mach 0.05",
-            Self::LargeTau => "largest relaxation time, Mach 0.05",
-            Self::Mach => "Mach number, least viscosity allowed",
-            Self::GridReynolds => "grid Reynolds number, Mach 0.17",
-        }
-    }
-
-    /// Values from mild to hostile: of relaxation time, what is over 1/2.
-    fn range(self) -> [f64; 2] {
-        match self {
-            Self::SmallTau => [0.1, 1e-4],
-            Self::LargeTau => [0.5, 4.5],
-            Self::Mach => [0.04, 1.0],
-            Self::GridReynolds => [2.0, 1000.0],
-        }
-    }
-
-    /// Speed and viscosity at a value.
-    fn state(self, value: f64, bounds: &Bounds) -> State {
-        let speed = |mach: f64| mach / 3.0_f64.sqrt();
-        match self {
-            Self::SmallTau | Self::LargeTau => State { speed: speed(MACH[0]), viscosity: value / 3.0 },
-            Self::Mach => State { speed: speed(value), viscosity: bounds.least_viscosity(speed(value)) },
-            Self::GridReynolds => State { speed: speed(MACH[1]), viscosity: speed(MACH[1]) / value },
-        }
-    }
-
-    /// The limit that the bounds predict.
-    fn predicted(self, bounds: &Bounds) -> Option<f64> {
-        let least = |mach: f64| bounds.least_viscosity(mach / 3.0_f64.sqrt());
-        match self {
-            Self::SmallTau => Some(3.0 * least(MACH[0])),
-            Self::LargeTau => None,
-            Self::Mach => Some(bounds.mach),
-            Self::GridReynolds => Some(MACH[1] / 3.0_f64.sqrt() / least(MACH[1])),
-        }
-    }
-
-    /// A value as it is printed.
-    fn shown(self, value: f64) -> f64 {
-        match self {
-            Self::SmallTau | Self::LargeTau => 0.5 + value,
-            _ => value,
-        }
-    }
-}
-
-/// Bounds that the solver reports.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Bounds {
-    mach: f64,
-    /// Whether the check refuses a larger Mach number.
-    refuses: bool,
-    reynolds: f64,
-    /// Grid Reynolds number of sound, where it is bounded.
-    sound: f64,
-}
-
-impl Bounds {
-    fn of(lbm: &impl Solver) -> Result<Self, Failure> {
-        let mut limits = Limits::default();
-        lbm.limits(&mut limits);
-        let named = |name: &str| limits.bounds.iter().find(|bound| bound.name == name);
-        match (named("Mach number"), named("grid Reynolds number")) {
-            (Some(mach), Some(reynolds)) => Ok(Self {
-                mach: mach.allowed,
-                refuses: mach.refuses,
-                reynolds: reynolds.allowed,
-                sound: named("grid Reynolds number of sound").map_or(f64::INFINITY, |bound| bound.allowed),
-            }),
-            _ => Err(Failure::Invalid("the solver reports no Mach or grid Reynolds number".to_owned())),
-        }
-    }
-
-    /// Least viscosity at a speed, in units of the lattice.
-    fn least_viscosity(&self, speed: f64) -> f64 {
-        (speed / self.reynolds).max(1.0 / (3.0_f64.sqrt() * self.sound))
-    }
-}
-
-/// How fine a study is.
-#[derive(Clone, Copy, Debug)]
-struct Fineness {
-    side: usize,
-    /// Times that the flow crosses its domain.
-    crossings: f64,
-    ladder: f64,
-    factor: f64,
-}
-
-impl Fineness {
-    fn of(effort: Effort) -> Self {
-        match effort {
-            Effort::Quick => Self { side: 24, crossings: 6.0, ladder: 2.5, factor: 1.2 },
-            Effort::Full => Self { side: 32, crossings: 10.0, ladder: 2.0, factor: 1.08 },
-        }
-    }
-}
-
-/// One sweep.
-#[derive(Clone, Debug)]
-struct Sweep {
-    case: String,
-    start: Start,
-    parameter: Parameter,
-    fineness: Fineness,
-}
-
-/// Sweeps the lattice Boltzmann method.
+/// Sweeps a method to its limits.
 ///
 /// # Errors
-/// When no operator or flow has such a name, or a flow cannot be set up.
-pub fn lbm(request: &Request) -> Result<Vec<Row>, Failure> {
-    let fineness = Fineness::of(request.effort);
-    check_names("operator", &request.operators, &OPERATORS.map(|(name, _)| name))?;
-    check_names("flow", &request.flows, &FLOWS)?;
-    let is_wanted = |name: &str, wanted: &[String]| wanted.is_empty() || wanted.iter().any(|n| n == name);
-    let mut sweeps = Vec::new();
-    for geometry in Geometry::ALL.into_iter().filter(|g| is_wanted(g.name(), &request.flows)) {
-        for (name, operator) in OPERATORS.into_iter().filter(|(n, _)| is_wanted(n, &request.operators)) {
-            for smagorinsky in [None, Some(SMAGORINSKY)] {
-                let start = Start { geometry, operator, smagorinsky, side: fineness.side };
-                let closure = if smagorinsky.is_some() { " with closure" } else { "" };
-                let case = format!("{}: {name}{closure}", geometry.name());
-                let of = |parameter| Sweep { case: case.clone(), start, parameter, fineness };
-                sweeps.extend(Parameter::ALL.map(of));
+/// When no method of this name has such a study, it has no such choice, or what is swept cannot be set up.
+pub fn limits(method: &str, request: &Request) -> Result<Vec<Row>, Failure> {
+    let known = METHODS.iter().find(|known| known.name == method).and_then(|known| known.stability);
+    let study = known.ok_or_else(|| Failure::Io(format!("no limits of `{method}` are studied")))?;
+    for (flag, names) in request.flags() {
+        let choice = study.choices.iter().find(|choice| choice.flag == flag);
+        choice.ok_or_else(|| elsewhere(flag, method))?.check(names)?;
+    }
+    (study.run)(request)
+}
+
+impl Choice {
+    fn check(&self, names: &[String]) -> Result<(), Failure> {
+        let Self { flag, names: known, .. } = self;
+        match names.iter().find(|name| !known.contains(&name.as_str())) {
+            None => Ok(()),
+            Some(name) => {
+                Err(Failure::Io(format!("no {flag} is called `{name}`; known: {}", known.join(", "))))
             }
         }
     }
-    parallel::each(&sweeps, Sweep::run)
 }
 
-fn check_names(what: &str, names: &[String], known: &[&str]) -> Result<(), Failure> {
-    match names.iter().find(|name| !known.contains(&name.as_str())) {
-        None => Ok(()),
-        Some(name) => Err(Failure::Io(format!("no {what} is called `{name}`; known: {}", known.join(", ")))),
-    }
-}
-
-impl Sweep {
-    /// What the solver allows; the same at any speed and viscosity.
-    fn bounds(&self) -> Result<Bounds, Failure> {
-        Bounds::of(&self.start.at(State { speed: 0.01, viscosity: 0.1 }).map_err(refused)?)
-    }
-
-    fn run(&self) -> Result<Row, Failure> {
-        let Self { start, parameter, fineness, .. } = self;
-        let bounds = self.bounds()?;
-        let predicted = parameter.predicted(&bounds);
-        let range = Range::new(parameter.range(), fineness.ladder, predicted, fineness.factor);
-        let mut refusal = None;
-        let found = range.search(|value| {
-            let state = parameter.state(value, &bounds);
-            match start.at(state) {
-                Ok(mut lbm) => watch(&mut lbm, start.steps(state, fineness.crossings)),
-                Err(error) => {
-                    refusal = Some(error);
-                    watch::End::Stopped("it cannot be set up".to_owned())
-                }
-            }
-        });
-        match refusal {
-            Some(error) => Err(refused(error)),
-            None => Ok(self.row(&found, predicted, bounds.refuses && *parameter == Parameter::Mach)),
+/// Says whose flag it is, with all that belong to the same method.
+fn elsewhere(flag: &str, method: &str) -> Failure {
+    let flags = |study: &Stability| study.choices.iter().map(|choice| choice.flag).collect::<Vec<_>>();
+    let owner = METHODS.iter().find_map(|method| {
+        let flags = method.stability.as_ref().map(flags)?;
+        flags.contains(&flag).then_some((method.name, flags))
+    });
+    Failure::Io(match owner {
+        None => format!("no study has a choice of `{flag}`"),
+        Some((owner, flags)) => {
+            let verb = if flags.len() > 1 { "are" } else { "is" };
+            let flags: Vec<String> = flags.iter().map(|flag| format!("--{flag}")).collect();
+            format!("{} {verb} of `{owner}`; leave them out for `{method}`", flags.join(" and "))
         }
-    }
-
-    /// `refuses`: the check refuses what is beyond the prediction.
-    fn row(&self, found: &Found, predicted: Option<f64>, refuses: bool) -> Row {
-        let parameter = self.parameter;
-        let swept = Swept {
-            case: self.case.clone(),
-            parameter: parameter.name(),
-            range: parameter.range(),
-            shown: &|value| parameter.shown(value),
-        };
-        swept.row(found, predicted, refuses)
-    }
-}
-
-fn refused(error: granular_lbm::SetupError) -> Failure {
-    Failure::Refused(vec![error.to_string()])
+    })
 }
 
 /// What a study comes to.
@@ -314,6 +166,3 @@ pub fn verdict(rows: &[Row]) -> Result<(), Failure> {
     }
     Err(Failure::Invalid(format!("{} of {} limits failed: {}", faults.len(), rows.len(), faults.join("\n"))))
 }
-
-#[cfg(test)]
-mod tests;

@@ -23,7 +23,7 @@ pub(crate) fn template(name: &str, edits: &[String]) -> Result<SceneText, Failur
 
 /// The change of a scene whose only output asks for these numbers: it is never written, but the ledger of energy is
 /// kept only for who asks.
-pub(super) fn asking_for(names: &[&str]) -> String {
+pub(crate) fn asking_for(names: &[&str]) -> String {
     let probes: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
     let table = format!("Table(path: \"series.csv\", probes: [{}])", probes.join(", "));
     format!("outputs=[(every: Time(\"1 s\"), write: {table})]")
@@ -33,7 +33,7 @@ pub(super) fn asking_for(names: &[&str]) -> String {
 ///
 /// # Errors
 /// When the scene is wrong or refused.
-pub(super) fn open(text: &SceneText) -> Result<(Scene, Model, Vec<f64>), Failure> {
+pub(crate) fn open(text: &SceneText) -> Result<(Scene, Model, Vec<f64>), Failure> {
     let (scene, model) = check::read(text)?;
     let (_, steps, problems) = check::limits_of(&scene, &model);
     if !problems.is_empty() {
@@ -43,7 +43,7 @@ pub(super) fn open(text: &SceneText) -> Result<(Scene, Model, Vec<f64>), Failure
 }
 
 /// Makes the changes at the start of a stage; returns what its pushes did, if there are any.
-pub(super) fn begin(model: &mut Model, index: usize) -> Option<PushRecord> {
+pub(crate) fn begin(model: &mut Model, index: usize) -> Option<PushRecord> {
     model.begin(index).into_iter().find_map(|(_, notes)| notes.push)
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn run(text: &SceneText) -> Result<(Model, Vec<bool>), Failure> {
 ///
 /// # Errors
 /// When the solver gives up.
-pub(super) fn stage(
+pub(crate) fn stage(
     scene: &Scene,
     model: &mut Model,
     index: usize,

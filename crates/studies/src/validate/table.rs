@@ -1,6 +1,7 @@
 //! Rows as a table for people, within 120 characters.
 
-use super::row::{Row, Tier};
+use super::row::Row;
+use super::tally::Tally;
 use std::fmt::Write;
 
 const WIDTH: usize = 116;
@@ -10,7 +11,7 @@ pub fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     for block in rows.chunk_by(|a, b| (a.case, a.solver, a.tier) == (b.case, b.solver, b.tier)) {
         let first = &block[0];
-        let heading = format!("{} ({}, {})", first.case, first.solver, tier(first.tier));
+        let heading = format!("{} ({}, {})", first.case, first.solver, first.tier.name());
         let _ = writeln!(
             text,
             "{heading:<52} {:>12} {:>12} {:>9} {:>9}  {:<6} {:>6}",
@@ -31,7 +32,7 @@ pub fn table(rows: &[Row]) -> String {
                 number(row.reference),
                 small(row.error),
                 small(row.tolerance),
-                verdict(row),
+                row.verdict(),
                 row.seconds
             );
         }
@@ -46,18 +47,11 @@ pub fn table(rows: &[Row]) -> String {
         }
         text.push('\n');
     }
-    let gating = rows.iter().filter(|row| row.gate).count();
-    let failed = rows.iter().filter(|row| row.gate && !row.pass).count();
-    let judged = |row: &&Row| !row.gate && row.judged;
-    let claims = rows.iter().filter(judged).count();
-    let missed = rows.iter().filter(judged).filter(|row| !row.pass).count();
-    let small = rows.len() - gating - claims;
+    let Tally { required, passed, claims, met, small } = Tally::of(rows);
     let seconds: f64 = rows.iter().map(|row| row.seconds).sum();
     let _ = writeln!(
         text,
-        "{} of {gating} required rows passed, {} of {claims} claims met, {seconds:.1} s",
-        gating - failed,
-        claims - missed
+        "{passed} of {required} required rows passed, {met} of {claims} claims met, {seconds:.1} s"
     );
     if small > 0 {
         let _ = writeln!(
@@ -68,30 +62,8 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-fn tier(tier: Tier) -> &'static str {
-    match tier {
-        Tier::ClosedForm => "closed form",
-        Tier::Order => "order of convergence",
-        Tier::Conservation => "conservation",
-        Tier::Identity => "identity",
-        Tier::Experiment => "experiment",
-        Tier::OtherCode => "other code",
-        Tier::Thesis => "thesis",
-    }
-}
-
-fn verdict(row: &Row) -> &'static str {
-    match (row.gate, row.pass) {
-        _ if !row.judged => "small",
-        (true, true) => "pass",
-        (true, false) => "FAILED",
-        (false, true) => "met",
-        (false, false) => "differs",
-    }
-}
-
 /// Six digits, without an exponent where that reads well.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || (1e-3..1e5).contains(&size) {
         let digits = if size >= 1.0 { 5 - (size.log10().floor() as usize).min(5) } else { 6 };
@@ -100,7 +72,8 @@ fn number(value: f64) -> String {
     format!("{value:.4e}")
 }
 
-fn small(value: f64) -> String {
+/// Two digits with an exponent.
+pub(super) fn small(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
 
@@ -122,11 +95,12 @@ fn wrapped(note: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::validate::row::{Measure, Rows};
+    use crate::validate::Tier;
+    use crate::validate::{Measure, Rows};
 
     #[test]
     fn no_line_is_too_long_and_the_verdict_is_said() {
-        let mut rows = Rows::new("a_case");
+        let mut rows = Rows::new("a_case", "dem");
         let note = "a reason that is long enough to be broken over several lines ".repeat(4);
         rows.add(Measure::relative(Tier::Thesis, "run-out", 1.0, 2.0, 0.1).claim().note(note));
         rows.add(Measure::absolute(Tier::ClosedForm, "angle", 1e-9, 0.0, 1e-3));
@@ -138,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_claim_is_judged_at_a_size_that_can_bear_it_only() {
-        let mut rows = Rows::new("a_case");
+        let mut rows = Rows::new("a_case", "dem");
         let claim = || Measure::relative(Tier::Thesis, "run-out", 1.0, 2.0, 0.1).claim();
         rows.claims_need(80, 1000);
         rows.add(claim());

@@ -4,18 +4,18 @@ use super::search::Found;
 use super::{Outcome, Row};
 
 /// A parameter that was swept from a mild to a hostile value.
-pub(super) struct Swept<'a> {
-    pub(super) case: String,
-    pub(super) parameter: &'static str,
+pub(crate) struct Swept<'a> {
+    pub(crate) case: String,
+    pub(crate) parameter: &'static str,
     /// From mild to hostile.
-    pub(super) range: [f64; 2],
+    pub(crate) range: [f64; 2],
     /// A value as it is printed.
-    pub(super) shown: &'a dyn Fn(f64) -> f64,
+    pub(crate) shown: &'a dyn Fn(f64) -> f64,
 }
 
 impl Swept<'_> {
     /// `refuses`: the check refuses what is beyond the prediction.
-    pub(super) fn row(&self, found: &Found, predicted: Option<f64>, refuses: bool) -> Row {
+    pub(crate) fn row(&self, found: &Found, predicted: Option<f64>, refuses: bool) -> Row {
         let (shown, [from, to]) = (self.shown, self.range);
         // Whether the observed limit is at least as hostile as the predicted one.
         let reaches = |value: f64| predicted.is_none_or(|p| if to > from { value >= p } else { value <= p });
@@ -58,7 +58,7 @@ impl Swept<'_> {
 }
 
 /// At most five digits.
-pub(super) fn brief(value: f64) -> String {
+pub(crate) fn brief(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
         return format!("{value:.3e}");
     }

@@ -4,27 +4,27 @@ use super::watch::End;
 
 /// Where a sweep goes.
 #[derive(Clone, Debug)]
-pub(super) struct Range {
+pub(crate) struct Range {
     /// Values from the mild to the hostile end, tried in turn until one does not finish.
-    pub(super) rungs: Vec<f64>,
+    pub(crate) rungs: Vec<f64>,
     /// Bisection ends when two values are nearer than this factor.
-    pub(super) factor: f64,
+    pub(crate) factor: f64,
 }
 
 /// What a sweep found.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The most hostile value that finished; none when the first one did not.
-    pub(super) finished: Option<f64>,
+    pub(crate) finished: Option<f64>,
     /// The mildest value that did not finish, and how it ended; none when all did.
-    pub(super) failed: Option<(f64, String)>,
+    pub(crate) failed: Option<(f64, String)>,
     /// Runs in which the guard was silent: value and what happened.
-    pub(super) missed: Vec<(f64, String)>,
+    pub(crate) missed: Vec<(f64, String)>,
 }
 
 impl Range {
     /// Steps of equal ratio between two values, at most `ratio` (above 1), with one more rung where it lies between.
-    pub(super) fn new([from, to]: [f64; 2], ratio: f64, between: Option<f64>, factor: f64) -> Self {
+    pub(crate) fn new([from, to]: [f64; 2], ratio: f64, between: Option<f64>, factor: f64) -> Self {
         let count = ((to / from).ln().abs() / ratio.ln()).ceil().max(1.0);
         let mut rungs: Vec<f64> =
             (0..=count as u32).map(|k| from * (to / from).powf(f64::from(k) / count)).collect();
@@ -40,7 +40,7 @@ impl Range {
     }
 
     /// Tries values. That a value finishes says nothing of the milder ones beyond the rungs that were tried.
-    pub(super) fn search(&self, mut run: impl FnMut(f64) -> End) -> Found {
+    pub(crate) fn search(&self, mut run: impl FnMut(f64) -> End) -> Found {
         let mut found = Found { finished: None, failed: None, missed: Vec::new() };
         for &value in &self.rungs {
             if found.take(value, run(value)) {

@@ -1,16 +1,15 @@
 //! Steps a flow and sees to it that the solver notices when it blows up.
 
-use granular_core::{D2, StepError};
-use granular_lbm::{D2Q9, Lbm, Lbm2};
+use granular_core::StepError;
 
 /// Steps between looks at the fields. Twice as many are the steps within which a blow-up must be noticed.
-pub(super) const BURST: u64 = 5;
+pub(crate) const BURST: u64 = 5;
 
 /// Said of a blow-up that was noticed in time, but for which a cell is named whose density makes sense.
-pub(super) const MISNAMED: &str = ", so it is another cell that blew up";
+pub(crate) const MISNAMED: &str = ", so it is another cell that blew up";
 
 /// What is stepped and looked at.
-pub(super) trait Watched {
+pub(crate) trait Watched {
     /// Advances by so many steps.
     fn advance(&mut self, steps: u64) -> Result<(), StepError>;
     /// What is wrong with the fields that are shown, if anything.
@@ -19,7 +18,7 @@ pub(super) trait Watched {
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// It took all its steps.
     Finished,
     /// The guard of the solver stopped it, and said why.
@@ -29,7 +28,7 @@ pub(super) enum End {
 }
 
 /// Takes so many steps, or as many as the guard lets pass.
-pub(super) fn watch(flow: &mut impl Watched, steps: u64) -> End {
+pub(crate) fn watch(flow: &mut impl Watched, steps: u64) -> End {
     let mut taken = 0;
     while taken < steps {
         if let Err(error) = flow.advance(BURST) {
@@ -60,35 +59,6 @@ fn named(error: &StepError) -> End {
         StepError::NotFinite { .. } => End::Stopped(error.to_string()),
         other => End::Missed(format!("the guard names nothing: {other}")),
     }
-}
-
-impl Watched for Lbm2 {
-    fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        let dt = self.setup().time_step;
-        granular_core::Solver::advance(self, dt, steps)
-    }
-
-    fn nonsense(&self) -> Option<String> {
-        nonsense(self)
-    }
-}
-
-/// Density that is not positive, a speed of a cell a step or more, anything not finite.
-fn nonsense(lbm: &Lbm<D2Q9, 9>) -> Option<String> {
-    let setup: &granular_lbm::Setup<D2> = lbm.setup();
-    let fastest = setup.lattice_speed();
-    // Pressure at which nothing is left of the density.
-    let void = -setup.density * fastest * fastest / 3.0;
-    let [nx, ny, _] = setup.cells;
-    for (x, y) in (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y))) {
-        let Some(flow) = lbm.flow([x, y, 0]) else { continue };
-        let (pressure, speed) = (flow.pressure, flow.velocity.length_squared().sqrt());
-        // Not a number fails both comparisons.
-        if !(pressure > void && pressure.is_finite() && speed < fastest) {
-            return Some(format!("cell [{x}, {y}] has {pressure:.3e} Pa and {speed:.3e} m/s"));
-        }
-    }
-    None
 }
 
 #[cfg(test)]

@@ -1,8 +1,0 @@
-//! Heights of a bouncing ball.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("bouncing_ball");
-}

@@ -1,8 +1,0 @@
-//! A cavity under a moving lid.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("cavity");
-}

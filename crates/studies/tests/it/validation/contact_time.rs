@@ -1,8 +1,0 @@
-//! Contact time and largest overlap.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("contact_time");
-}

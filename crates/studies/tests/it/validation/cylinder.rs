@@ -1,8 +1,0 @@
-//! A cylinder in a channel.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("cylinder");
-}

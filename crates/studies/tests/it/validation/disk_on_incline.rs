@@ -1,8 +1,0 @@
-//! A disk slips or rolls down an incline.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("disk_on_incline");
-}

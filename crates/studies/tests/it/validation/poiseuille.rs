@@ -1,8 +1,0 @@
-//! Flow between plates.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("poiseuille");
-}

@@ -1,8 +1,0 @@
-//! Decaying vortices.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("taylor_green");
-}

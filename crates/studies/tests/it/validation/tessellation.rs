@@ -1,8 +1,0 @@
-//! Weighted Voronoi diagrams.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("tessellation");
-}

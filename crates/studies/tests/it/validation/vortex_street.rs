@@ -1,8 +1,0 @@
-//! Vortex streets behind a disk and a square.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("vortex_street");
-}

@@ -1,8 +1,0 @@
-//! A wall in a channel.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("wall_in_channel");
-}

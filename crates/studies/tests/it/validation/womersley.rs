@@ -1,8 +1,0 @@
-//! Oscillating flow between plates.
-
-use super::passes;
-
-#[test]
-fn required_rows_pass() {
-    passes("womersley");
-}
