@@ -271,10 +271,10 @@ fn a_block_slides_or_sticks_on_an_incline() {
         for (degrees, friction, acceleration) in [(30.0, 0.466, 0.94600), (45.0, 0.1, 6.2430)] {
             let [whole, level] =
                 slides(degrees, friction, false, shape).map(|found| found / acceleration - 1.0);
-            // Other shape functions than blocks let it hop a little, and part of its base sticks now and then.
-            let (error, allowed) =
-                if shape == ShapeFunctions::UniformGimp { (whole, 0.01) } else { (level, 0.02) };
-            assert!(error.abs() < allowed, "{shape:?} {degrees}: {whole} {level}");
+            // It hops a little: while it rises the floor carries more than its weight. With other shape functions than blocks
+            // part of its base also sticks now and then.
+            let allowed = if shape == ShapeFunctions::UniformGimp { 0.01 } else { 0.02 };
+            assert!(level.abs() < allowed && whole.abs() < 0.05, "{shape:?} {degrees}: {whole} {level}");
         }
         let creep = slides(24.0, 0.466, true, shape)[0] / (9.81 * 24.0_f64.to_radians().sin());
         assert!(creep.abs() < 1e-3, "{shape:?}: {creep}");
