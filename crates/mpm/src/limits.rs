@@ -36,7 +36,7 @@ impl<D: Dim> Mpm<D> {
 
     /// The step in which a wave crosses a cell, and the speed of the wave.
     fn wave_step(&self) -> (f64, f64) {
-        let speeds = self.groups.iter().map(|group| group.body.wave_speed(group.density / group.loosest));
+        let speeds = self.groups.iter().map(|group| group.body.wave_speed(group.density / group.looseness));
         let wave = speeds.fold(0.0, f64::max);
         let share = stable_share(self.options.scheme, self.options.shape);
         (share * self.grid.lattice.cell / (wave + self.fastest), wave)
@@ -45,7 +45,7 @@ impl<D: Dim> Mpm<D> {
     /// The step in which momentum diffuses across a cell, and the kinematic viscosity.
     fn viscous_step(&self) -> (f64, f64) {
         let cell = self.grid.lattice.cell;
-        let of = self.groups.iter().map(|group| group.body.viscosity() * group.loosest / group.density);
+        let of = self.groups.iter().map(|group| group.body.viscosity() * group.looseness / group.density);
         let viscosity = of.fold(0.0, f64::max);
         (cell * cell / (8.0 / 3.0 * D::N as f64 * viscosity), viscosity)
     }

@@ -32,6 +32,8 @@ pub(crate) struct Watch {
     pub(crate) fastest: u64,
     /// Greatest volume over that at the start.
     pub(crate) loosest: u64,
+    /// Sum over particles of their volumes over those at the start; one for those that carry nothing.
+    pub(crate) stretched: f64,
     /// What was lost in the last pass: to PIC, to plastic strain and to viscosity \[J\].
     pub(crate) lost: [f64; 3],
 }
@@ -41,6 +43,7 @@ impl Watch {
         Self {
             fastest: self.fastest.max(other.fastest),
             loosest: self.loosest.max(other.loosest),
+            stretched: self.stretched + other.stretched,
             lost: [0, 1, 2].map(|kind: usize| self.lost[kind] + other.lost[kind]),
         }
     }
@@ -179,6 +182,7 @@ pub(crate) fn strain_particles<D: Dim, A: Gradients, T: Turning>(
     let stress = &mut cut::<D>(stress, count);
     let lane = vector * D::N;
     let mut loosest = watch.loosest;
+    let mut stretched = [0.0; BATCH];
     for k in 0..count {
         // Derivative of component `row` along `column`, times the step.
         let gradient = A::gradient(|row, column| rows[1 + column][k].0[(lane + row) & 7] * dt_per_cell);
@@ -188,9 +192,11 @@ pub(crate) fn strain_particles<D: Dim, A: Gradients, T: Turning>(
         volume[k] *= A::stretch(gradient);
         let ratio = volume[k] * density / mass[k];
         strains.volume_ratio[k] = ratio;
+        loosest = loosest.max(ratio.to_bits());
         // Material that carries nothing has separated: it has no waves until it is as dense as it was.
         let carries = before.xx != 0.0 || before.yy != 0.0 || before.zz != 0.0;
-        loosest = loosest.max(if carries || ratio.is_nan() || ratio <= 0.0 { ratio } else { 1.0 }.to_bits());
+        stretched[k] = if carries { ratio } else { 1.0 };
     }
     watch.loosest = loosest;
+    watch.stretched += stretched[..count].iter().sum::<f64>();
 }

@@ -129,7 +129,7 @@ impl<D: Dim> Mpm<D> {
             self.fastest = self.fastest.max(particle.velocity.length());
         }
         let starts = vec![first, self.particles.len() as u32];
-        self.groups.push(Group { body, density, starts, loosest: 1.0 });
+        self.groups.push(Group { body, density, starts, looseness: 1.0 });
         self.injected += self.energy_of_group(self.groups.len() - 1).mechanical();
         self.sort().map_err(|_| SetupError::new("place", f64::NAN, "within 2^31 cells of the origin"))?;
         Ok(BodyId(self.groups.len() - 1))

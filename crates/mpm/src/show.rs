@@ -31,7 +31,11 @@ const NUMBERS: [Entry; 20] = [
     ("energy_residual", "J", "energy that the ledger misses"),
     ("mass", "kg", "sum of masses"),
     ("max_speed", "m/s", "speed of the fastest particle"),
-    ("max_volume_ratio", "1", "largest volume over that at the start"),
+    (
+        "mean_volume_ratio",
+        "1",
+        "mean volume of particles that carry stress over that at the start; of the loosest body",
+    ),
     ("lowest", "m", "smallest height of a particle"),
 ];
 
@@ -151,7 +155,7 @@ impl<D: Dim> Mpm<D> {
             "energy_residual" => self.energy_residual().unwrap_or(f64::NAN),
             "mass" => self.mass(),
             "max_speed" => self.particles.velocity.iter().map(|v| v.length()).fold(0.0, f64::max),
-            _ => self.groups.iter().map(|group| group.loosest).fold(0.0, f64::max),
+            _ => self.groups.iter().map(|group| group.looseness).fold(0.0, f64::max),
         }
     }
 

@@ -28,8 +28,8 @@ pub(crate) struct Group<D: Dim> {
     pub(crate) density: f64,
     /// Where each home begins among all particles, and the end of the last.
     pub(crate) starts: Vec<u32>,
-    /// Greatest volume over that at the start.
-    pub(crate) loosest: f64,
+    /// Mean volume of particles that carry stress over that at the start.
+    pub(crate) looseness: f64,
 }
 
 impl<D: Dim> Sorting<D> {

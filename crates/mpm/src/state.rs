@@ -33,8 +33,8 @@ impl<D: Dim> Mpm<D> {
             self.groups.iter().for_each(|group| group.starts.iter().for_each(|&start| put(start)));
         });
         to.put(SORTED, &[self.travel, self.fastest]);
-        to.put_each("loosest", self.groups.len(), |put| {
-            self.groups.iter().for_each(|group| put(group.loosest));
+        to.put_each("looseness", self.groups.len(), |put| {
+            self.groups.iter().for_each(|group| put(group.looseness));
         });
         to.put(LOSSES, &self.losses.to_array());
         to.put_one("energy put in", self.injected);
@@ -65,9 +65,9 @@ impl<D: Dim> Mpm<D> {
         };
         let sorted = numbers(SORTED, 2)?;
         (self.travel, self.fastest) = (sorted[0], sorted[1]);
-        let loosest = numbers("loosest", self.groups.len())?;
-        for (group, loosest) in self.groups.iter_mut().zip(loosest) {
-            group.loosest = loosest;
+        let looseness = numbers("looseness", self.groups.len())?;
+        for (group, looseness) in self.groups.iter_mut().zip(looseness) {
+            group.looseness = looseness;
         }
         let losses = numbers(LOSSES, 6)?;
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));

@@ -142,6 +142,7 @@ impl<D: Dim> Mpm<D> {
             watches.resize(grid.homes().len(), Watch::default());
             let starts = &group.starts[..];
             let range = starts[0] as usize..starts[starts.len() - 1] as usize;
+            let range_length = range.len();
             let width = particles.width.get(range.clone()).unwrap_or(&[]);
             let stress = particles.stress.each_mut().map(|s| s.get_mut(range.clone()).unwrap_or(&mut []));
             let changing = Changing {
@@ -164,7 +165,7 @@ impl<D: Dim> Mpm<D> {
             });
             let of_group = watches.iter().copied().fold(Watch::default(), Watch::join);
             if plan.strain.is_some() {
-                group.loosest = f64::from_bits(of_group.loosest);
+                group.looseness = of_group.stretched / range_length.max(1) as f64;
             }
             whole = whole.join(of_group);
         }
