@@ -23,9 +23,9 @@ pub(crate) struct Touch<D: Dim> {
     both_sides: bool,
     /// Velocity of the wall there.
     pub(crate) velocity: D::Vec,
-    /// Momentum that the wall gave to the node in the last step \[N s\].
-    pub(crate) impulse: D::Vec,
-    /// Energy lost there in the last step \[J\]: to friction, and to stopping.
+    /// Momentum that the wall gave to the node in the last step \[N s\]: by friction, and by keeping it out.
+    impulses: [D::Vec; 2],
+    /// Energy lost there in the last step \[J\], by the same.
     pub(crate) lost: [f64; 2],
     /// How much the wall had to slow the node down to keep it out, so far in this step.
     press: f64,
@@ -78,7 +78,7 @@ impl<D: Dim> Touches<D> {
                         normal: pose.out_of_wall(normal),
                         both_sides,
                         velocity: pose.velocities(at).0,
-                        impulse: D::Vec::ZERO,
+                        impulses: [D::Vec::ZERO; 2],
                         lost: [0.0; 2],
                         press: 0.0,
                         is_pressed: false,
@@ -122,7 +122,7 @@ fn normal_on<D: Dim>(shape: &Shape<D>, at: D::Vec, cell: f64) -> D::Vec {
 impl<D: Dim> Touch<D> {
     /// Nothing has happened yet in this step.
     pub(crate) fn rest(&mut self) {
-        (self.press, self.impulse, self.lost) = (0.0, D::Vec::ZERO, [0.0; 2]);
+        (self.press, self.impulses, self.lost) = (0.0, [D::Vec::ZERO; 2], [0.0; 2]);
         (self.is_pressed, self.sticks) = (false, false);
     }
 
@@ -188,11 +188,16 @@ impl<D: Dim> Touch<D> {
         }
     }
 
-    /// Books a change of velocity, as one of the two losses.
-    fn book(&mut self, mass: f64, before: D::Vec, after: D::Vec, loss: usize) {
-        let impulse = (after - before) * mass;
-        self.impulse += impulse;
-        self.lost[loss] -= impulse.dot((before + after) * 0.5 - self.velocity);
+    /// Momentum that the wall gave to the node in the last step \[N s\].
+    pub(crate) fn impulse(&self) -> D::Vec {
+        self.impulses[0] + self.impulses[1]
+    }
+
+    /// Books the work of a step in which the node went from one velocity to another: that of each push on the mean of both. What
+    /// presses on a wall at rest and stays there loses nothing.
+    fn book(&mut self, before: D::Vec, after: D::Vec) {
+        let mean = (before + after) * 0.5 - self.velocity;
+        self.lost = self.impulses.map(|impulse| -impulse.dot(mean));
     }
 }
 
@@ -232,6 +237,7 @@ impl<D: Dim> Meeting<'_, D> {
         let rubbed = self.rub(stopped);
         // Friction of one wall may push into another.
         let after = if self.touches.len() > 1 { self.stop(rubbed) } else { rubbed };
+        self.touches.iter_mut().for_each(|touch| touch.book(before, after));
         (before, after)
     }
 
@@ -258,7 +264,7 @@ impl<D: Dim> Meeting<'_, D> {
         let mass = self.mass;
         self.fold(velocity, |touch, condition, before| {
             let after = touch.stop(condition, before);
-            touch.book(mass, before, after, 1);
+            touch.impulses[1] += (after - before) * mass;
             after
         })
     }
@@ -267,7 +273,7 @@ impl<D: Dim> Meeting<'_, D> {
         let mut now = velocity;
         for touch in &mut *self.touches {
             let after = touch.rub(Self::condition(self.walls, touch), now);
-            touch.book(self.mass, now, after, 0);
+            touch.impulses[0] += (after - now) * self.mass;
             now = after;
         }
         now

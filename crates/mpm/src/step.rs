@@ -177,11 +177,11 @@ impl<D: Dim> Mpm<D> {
         self.wall_forces.fill(D::Vec::ZERO);
         let mut work = 0.0;
         for touch in &self.touches.list {
-            self.wall_forces[touch.wall as usize] -= touch.impulse * (1.0 / dt);
+            self.wall_forces[touch.wall as usize] -= touch.impulse() * (1.0 / dt);
             if self.options.ledger {
                 self.losses.friction += touch.lost[0];
                 self.losses.stopping += touch.lost[1];
-                work += touch.impulse.dot(touch.velocity);
+                work += touch.impulse().dot(touch.velocity);
             }
         }
         if !self.moving.is_empty() {
