@@ -16,13 +16,13 @@ pub struct ContinuumSpec {
     #[serde(default)]
     pub density: Option<Density>,
     /// How it answers to strain.
-    pub law: LawSpec,
+    pub law: ConstitutiveLawSpec,
 }
 
 /// A constitutive law.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub enum LawSpec {
+pub enum ConstitutiveLawSpec {
     /// Linear elasticity in rate form.
     LinearElastic {
         /// Young's modulus, above 0.

@@ -1,6 +1,6 @@
 //! From what a scene says to laws.
 
-use super::{ConeSpec, FrictionSpec, GrainsSpec, LawSpec};
+use super::{ConeSpec, ConstitutiveLawSpec, FrictionSpec, GrainsSpec};
 use crate::{
     AnyLaw, Bingham, ConeMatch, DruckerPrager, Grains, LinearElastic, LinearFriction, MohrCoulomb, MuI,
     Newtonian, NorSand, NorSandConstants, NorSandState, PressureElastic, SaturatingFriction, Strength, Tait,
@@ -85,12 +85,12 @@ impl AnyLaw {
     ///
     /// # Errors
     /// When a value is out of its range; the error says which, and what is allowed.
-    pub fn from_spec(spec: &LawSpec, density: f64) -> Result<Self, SetupError> {
+    pub fn from_spec(spec: &ConstitutiveLawSpec, density: f64) -> Result<Self, SetupError> {
         match *spec {
-            LawSpec::LinearElastic { young_modulus, poisson_ratio } => {
+            ConstitutiveLawSpec::LinearElastic { young_modulus, poisson_ratio } => {
                 elastic(young_modulus, poisson_ratio).map(Self::from)
             }
-            LawSpec::MohrCoulomb {
+            ConstitutiveLawSpec::MohrCoulomb {
                 young_modulus,
                 poisson_ratio,
                 friction_angle,
@@ -102,7 +102,7 @@ impl AnyLaw {
                 strength(friction_angle, dilation_angle, cohesion),
                 tensile_strength,
             ),
-            LawSpec::DruckerPrager {
+            ConstitutiveLawSpec::DruckerPrager {
                 young_modulus,
                 poisson_ratio,
                 friction_angle,
@@ -114,10 +114,10 @@ impl AnyLaw {
                 DruckerPrager::new(elastic(young_modulus, poisson_ratio)?, strength, cone.into())
                     .map(Self::from)
             }
-            LawSpec::MuI { young_modulus, poisson_ratio, friction, grains } => {
+            ConstitutiveLawSpec::MuI { young_modulus, poisson_ratio, friction, grains } => {
                 mu_i(elastic(young_modulus, poisson_ratio)?, friction, grains.into())
             }
-            LawSpec::NorSand {
+            ConstitutiveLawSpec::NorSand {
                 shear_modulus,
                 reference_pressure,
                 poisson_ratio,
@@ -146,10 +146,16 @@ impl AnyLaw {
                 let image_pressure = image_pressure(preconsolidation_pressure, coupling)?;
                 NorSand::new(elastic, constants, NorSandState { void_ratio, image_pressure }).map(Self::from)
             }
-            LawSpec::Newtonian { viscosity, sound_speed, tension } => {
+            ConstitutiveLawSpec::Newtonian { viscosity, sound_speed, tension } => {
                 Newtonian::new(viscosity.value(), state(density, sound_speed, tension)?).map(Self::from)
             }
-            LawSpec::Bingham { viscosity, yield_stress, smoothing_time, sound_speed, tension } => {
+            ConstitutiveLawSpec::Bingham {
+                viscosity,
+                yield_stress,
+                smoothing_time,
+                sound_speed,
+                tension,
+            } => {
                 let state = state(density, sound_speed, tension)?;
                 Bingham::new(viscosity.value(), yield_stress.value(), smoothing_time.value(), state)
                     .map(Self::from)

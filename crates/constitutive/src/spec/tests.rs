@@ -3,7 +3,7 @@ use crate::AnyLaw;
 use crate::{Bingham, LinearElastic, MohrCoulomb, Strength, Tait};
 
 fn law(json: &str) -> Result<AnyLaw, String> {
-    let spec: LawSpec = serde_json::from_str(json).map_err(|error| error.to_string())?;
+    let spec: ConstitutiveLawSpec = serde_json::from_str(json).map_err(|error| error.to_string())?;
     AnyLaw::from_spec(&spec, 1500.0).map_err(|error| error.to_string())
 }
 

@@ -1,6 +1,6 @@
 //! `docs/constitutive-laws.md` names every key that scenes may give.
 
-use granular_constitutive::spec::LawSpec;
+use granular_constitutive::spec::ConstitutiveLawSpec;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn the_page_names_every_key() {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let words: BTreeSet<&str> = page.split(|c: char| !is_word(c)).collect();
     let mut keys = BTreeSet::new();
-    collect(schemars::schema_for!(LawSpec).as_value(), &mut keys);
+    collect(schemars::schema_for!(ConstitutiveLawSpec).as_value(), &mut keys);
     assert!(keys.len() > 30 && keys.contains("MohrCoulomb"), "{keys:?}");
     let missing: Vec<&String> = keys.iter().filter(|key| !words.contains(key.as_str())).collect();
     assert!(missing.is_empty(), "the page lacks {missing:?}");
