@@ -123,12 +123,9 @@ mod tests {
             // Derivatives are those of the values.
             let (later, earlier) = (S::shares(at + 1e-6, width, BOUNDS), S::shares(at - 1e-6, width, BOUNDS));
             if later.first == earlier.first {
-                for node in 0..3 {
+                for (node, slope) in slope.into_iter().enumerate() {
                     let by_difference = (later.value[node] - earlier.value[node]) / 2e-6;
-                    assert!(
-                        (by_difference - slope[node]).abs() < 2e-6 / width.min(1.0),
-                        "node {node} at {at}"
-                    );
+                    assert!((by_difference - slope).abs() < 2e-6 / width.min(1.0), "node {node} at {at}");
                 }
             }
         }
