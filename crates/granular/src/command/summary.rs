@@ -7,13 +7,14 @@ use std::path::Path;
 /// What is printed at the end of a run.
 pub(super) fn of_result(facts: &Value, folder: &Path) -> String {
     let number = |key: &str| facts[key].as_f64().unwrap_or(f64::NAN);
+    // Several solvers have no rate in common.
+    let rate =
+        facts["rate"].as_f64().map_or(String::new(), |rate| format!(" ({rate:.2e} {}-steps/s)", item(facts)));
     let mut text = format!(
-        "done: {:.6} s in {} steps and {:.1} s of wall time ({:.2e} {}-steps/s)\n",
+        "done: {:.6} s in {} steps and {:.1} s of wall time{rate}\n",
         number("simulated_seconds"),
         facts["steps"],
         number("wall_seconds"),
-        number("rate"),
-        item(facts),
     );
     text += &metrics(facts);
     text + &line("state hash", facts["state_hash"].as_str().unwrap_or(""))
