@@ -8,6 +8,8 @@
 mod dem;
 #[cfg(feature = "lbm")]
 mod lbm;
+#[cfg(feature = "mpm")]
+mod mpm;
 mod packing;
 mod tessellate;
 
@@ -21,6 +23,8 @@ pub const METHODS: &[Method] = &[
     dem::METHOD,
     #[cfg(feature = "lbm")]
     lbm::METHOD,
+    #[cfg(feature = "mpm")]
+    mpm::METHOD,
     packing::METHOD,
     tessellate::METHOD,
 ];
