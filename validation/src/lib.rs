@@ -62,7 +62,7 @@ macro_rules! readmes {
 const README: &[(&str, &str)] = readmes! {
     ball_on_incline bouncing_ball carried_disk cavity chain_waves chung_ooi coarse_graining column_density
     column_runout column_studies contact_time couette critical_state cylinder disk_in_channel
-    disk_on_incline energy_balance flat_surface fluid_mass grading hertz_impact hydrostatic lattice_moduli
+    disk_on_incline elastic_column element_tests energy_balance flat_surface fluid_mass grading hertz_impact hydrostatic lattice_moduli
     momentum moving_walls oblique_impact packing_density periodic_cell poiseuille regular_packings
     restitution rotating_frame sample_densities sliding_to_rolling slope_impact square_array taylor_green
     tessellation vortex_street wall_forces wall_in_channel womersley
