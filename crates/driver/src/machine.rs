@@ -43,7 +43,7 @@ pub(crate) fn most(bytes: f64) -> f64 {
 ///
 /// # Errors
 /// With what is wrong, in words.
-#[cfg(feature = "dem")]
+#[cfg(any(feature = "dem", feature = "mpm"))]
 pub(crate) fn readable(path: &Path, bytes: f64) -> Result<(), String> {
     let data = fs::metadata(path).map_err(|error| error.to_string())?;
     if !data.is_file() {

@@ -2,6 +2,7 @@
 
 mod motion;
 
+#[cfg(feature = "dem")]
 pub(crate) use motion::waits;
 
 use crate::column::{ColumnSize, Round};

@@ -12,36 +12,33 @@ const SETTLED: [f64; 2] = [0.815, 0.60];
 
 /// A column or cylinder of a scene before anything is in it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Outline<'a> {
+pub(crate) struct Outline {
     pub(crate) extent: Extent,
     aspect_ratio: f64,
     depth_ratio: Option<f64>,
     pub(crate) round: Option<Round>,
-    pub(crate) grading: Option<&'a GradingSpec>,
     pub(crate) packing: Option<PackingSpec>,
     pub(crate) seed: u64,
 }
 
-impl<'a> Outline<'a> {
+impl Outline {
     /// The outline of a sample that is a column or cylinder. None where it is neither, or when there are problems.
-    pub(crate) fn of<D: Dim>(sample: &'a Sample, problems: &mut Problems) -> Option<Self> {
+    pub(crate) fn of<D: Dim>(sample: &Sample, problems: &mut Problems) -> Option<Self> {
         let before = problems.0.len();
         let outline = match sample {
-            Sample::Column { extent, aspect_ratio, depth_ratio, grading, packing, seed, .. } => Self {
+            Sample::Column { extent, aspect_ratio, depth_ratio, packing, seed, .. } => Self {
                 extent: *extent,
                 aspect_ratio: *aspect_ratio,
                 depth_ratio: *depth_ratio,
                 round: None,
-                grading: grading.as_ref(),
                 packing: *packing,
                 seed: *seed,
             },
-            Sample::Cylinder { extent, aspect_ratio, half, grading, packing, seed, .. } => Self {
+            Sample::Cylinder { extent, aspect_ratio, half, packing, seed, .. } => Self {
                 extent: *extent,
                 aspect_ratio: *aspect_ratio,
                 depth_ratio: None,
                 round: Some(if *half { Round::Half } else { Round::Whole }),
-                grading: grading.as_ref(),
                 packing: *packing,
                 seed: *seed,
             },

@@ -9,9 +9,9 @@ pub use granular_dem::spec::{GrainSpec, MaterialSpec, PairSpec};
 use schemars::JsonSchema;
 use serde::Deserialize;
 #[cfg(not(feature = "mpm"))]
-pub use unread::ContinuumSpec;
+pub use without_continua::ContinuumSpec;
 #[cfg(not(feature = "dem"))]
-pub use unread::{GrainSpec, MaterialSpec, PairSpec};
+pub use without_grains::{GrainSpec, MaterialSpec, PairSpec};
 
 macro_rules! feature_of {
     () => {
@@ -70,10 +70,20 @@ pub(crate) fn explain(problem: SceneProblem) -> SceneProblem {
     }
 }
 
-/// Stand-ins for what the methods that are off read of a scene: anything is taken, and refused as a part that no method uses.
-#[cfg(not(all(feature = "dem", feature = "mpm")))]
-#[allow(dead_code)]
-mod unread {
+/// Stand-in for what only a continuum reads of a scene: anything is taken, and refused as a part that no method uses.
+#[cfg(not(feature = "mpm"))]
+mod without_continua {
+    use schemars::JsonSchema;
+    use serde::Deserialize;
+
+    /// A continuum.
+    #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+    pub struct ContinuumSpec {}
+}
+
+/// The same for grains.
+#[cfg(not(feature = "dem"))]
+mod without_grains {
     use schemars::JsonSchema;
     use serde::Deserialize;
 
@@ -83,10 +93,6 @@ mod unread {
         /// Coefficient of Coulomb friction.
         pub friction: f64,
     }
-
-    /// A continuum.
-    #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-    pub struct ContinuumSpec {}
 
     /// A pair of materials.
     #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]

@@ -101,7 +101,7 @@ fn grain<D: Dim>(
 
 /// A column before its grains are placed.
 struct Column<'a> {
-    outline: Outline<'a>,
+    outline: Outline,
     grading: &'a GradingSpec,
     packing: PackingSpec,
 }
@@ -184,7 +184,7 @@ impl<'a> Column<'a> {
 }
 
 /// Number of grains of a column or cylinder.
-fn count_of<D: Dim>(outline: &Outline<'_>, grading: &Grading) -> Result<usize, Refusal> {
+fn count_of<D: Dim>(outline: &Outline, grading: &Grading) -> Result<usize, Refusal> {
     let count = match (outline.extent, outline.given_width()) {
         (Extent::Width(_), Some(width)) => {
             let probe = grading.sample::<D>(1000, outline.seed)?;

@@ -57,7 +57,7 @@ pub(super) fn bodies<D: Dim>(
             let outline = Outline::of::<D>(sample, problems);
             let continuum = continuum::<D>(scene, "sample.material", material, outline.as_ref(), problems);
             let outline = outline?;
-            let size = outline.size::<D>(width_of::<D>(&outline, problems)?);
+            let size = outline.size::<D>(width_of::<D>(sample, &outline, problems)?);
             let (law, density) = continuum?;
             check_cell(name, spec, size.width.min(size.height), problems)?;
             let particles = column::<D>(size, edge, problems)?;
@@ -110,7 +110,7 @@ fn continuum<D: Dim>(
     scene: &Scene,
     path: &str,
     material: &str,
-    outline: Option<&Outline<'_>>,
+    outline: Option<&Outline>,
     problems: &mut Problems,
 ) -> Option<(AnyLaw, f64)> {
     let Some(spec) = scene.continua.get(material) else {
@@ -147,11 +147,12 @@ fn continuum<D: Dim>(
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
-fn width_of<D: Dim>(outline: &Outline<'_>, problems: &mut Problems) -> Option<f64> {
+fn width_of<D: Dim>(sample: &Sample, outline: &Outline, problems: &mut Problems) -> Option<f64> {
     if let Some(width) = outline.given_width() {
         return Some(width);
     }
-    let (Extent::Grains(count), Some(grading)) = (outline.extent, outline.grading) else {
+    let (Sample::Column { grading, .. } | Sample::Cylinder { grading, .. }) = sample else { return None };
+    let (Extent::Grains(count), Some(grading)) = (outline.extent, grading) else {
         let hint = "or give the width: extent: Width(\"0.1 m\")";
         problems.add(
             "sample.grading",

@@ -11,7 +11,7 @@ use granular_packing::{Lattice, loose_lattice};
 
 /// A cylinder before its grains are placed.
 struct Cylinder<'a> {
-    outline: Outline<'a>,
+    outline: Outline,
     round: Round,
     grading: &'a GradingSpec,
     packing: PackingSpec,
