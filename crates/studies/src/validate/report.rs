@@ -88,7 +88,7 @@ impl Report<'_> {
         let form = match self.effort {
             Effort::Full => "complete",
             Effort::Quick => {
-                "quick: small samples, seconds a case; claims that take more grains than were run are not judged (*small*), \
+                "quick, with small samples, seconds a case; claims that take more grains than were run are not judged (*small*), \
                  and `--full` runs as many as they take"
             }
         };

@@ -56,13 +56,18 @@ fn line<'a>(row: &'a Row, notes: &mut Notes<'a>) -> String {
         "| {} | {} | {} | {} | {}{absolute} | {} | {} | {} |\n",
         escaped(&row.metric),
         row.tier.name(),
-        number(row.value),
-        number(row.reference),
+        plain(row.value),
+        plain(row.reference),
         small(row.error),
         small(row.tolerance),
         verdict(row),
         notes.cell(note)
     )
+}
+
+/// A number as tables for people have it, but for zeros, which need no digits.
+fn plain(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { number(value) }
 }
 
 /// The verdict, in bold where it is a failure.
