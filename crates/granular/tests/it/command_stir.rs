@@ -158,7 +158,7 @@ const REFUSED: &[(&str, &[&str])] = &[
     ),
     (
         "stages.0.changes=[StopMotion]",
-        &["`stages.0.changes.0`", "FaceVelocity, ObstacleSpin or Gravity", "Dem does"],
+        &["`stages.0.changes.0`", "FaceVelocity, ObstacleSpin or Gravity", "Dem or Mpm does"],
     ),
     (
         "fluid.obstacles=[(name: \"a\", shape: Hole(Ball(centre: [0, 0], radius: 0)))]",

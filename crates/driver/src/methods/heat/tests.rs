@@ -64,7 +64,7 @@ fn a_check_knows_its_limit_and_its_keys() {
     let walls = scene(&["walls=[Floor(material: \"wood\")]"]);
     let Err(Failure::Scene(problems)) = check::check(&walls) else { panic!() };
     assert!(
-        problems[0].to_string().contains("`plate` is Heat, which does not use it; Dem does"),
+        problems[0].to_string().contains("`plate` is Heat, which does not use it; Dem or Mpm does"),
         "{}",
         problems[0]
     );
