@@ -107,7 +107,11 @@ const REFUSED: &[(&str, i32, &[&str])] = &[
     (
         "stages.1.changes=[StopMotion]",
         2,
-        &["`stages.1.changes.0`", "ObstacleSpin or Gravity", "`oil` is Lbm, which does not use it; Dem or Mpm does"],
+        &[
+            "`stages.1.changes.0`",
+            "ObstacleSpin or Gravity",
+            "`oil` is Lbm, which does not use it; Dem or Mpm does",
+        ],
     ),
     ("outputs.2.write.to=[\"20 mm\", \"31 mm\"]", 2, &["outside the fluid", "a line in the fluid"]),
     ("outputs.0.write.probes=[\"drag_coefficient_of_step\"]", 2, &["which nothing shows"]),
