@@ -62,8 +62,9 @@ macro_rules! readmes {
 const README: &[(&str, &str)] = readmes! {
     ball_on_incline bouncing_ball carried_disk cavity chain_waves chung_ooi coarse_graining column_density
     column_runout column_studies contact_time couette critical_state cylinder disk_in_channel
-    disk_on_incline elastic_column element_tests energy_balance flat_surface fluid_mass grading hertz_impact hydrostatic lattice_moduli
-    momentum moving_walls oblique_impact packing_density periodic_cell poiseuille regular_packings
-    restitution rotating_frame sample_densities sliding_to_rolling slope_impact square_array taylor_green
-    tessellation vortex_street wall_forces wall_in_channel womersley
+    disk_on_incline elastic_column element_tests energy_balance flat_surface fluid_mass grading hertz_impact
+    hydrostatic lattice_moduli momentum moving_walls oblique_impact packing_density periodic_cell poiseuille
+    regular_packings restitution rotating_disk rotating_frame sample_densities single_point sliding_block
+    sliding_to_rolling slope_impact square_array taylor_green tessellation two_disks uniform_drift
+    vibrating_bar vortex_street wall_forces wall_in_channel womersley
 };

@@ -1,5 +1,6 @@
 //! One point of Mohr-Coulomb along paths whose ends are known.
 
+use crate::methods::mpm::names::said;
 use crate::validate::{Effort, Measure, Rows, Tier};
 use granular_constitutive::element::{ElementState, Path, run as lead};
 use granular_constitutive::{LinearElastic, MohrCoulomb, Strength};
@@ -39,8 +40,4 @@ pub(super) fn run(rows: &mut Rows, _: Effort) -> Result<(), Failure> {
     let bulk = YOUNG / (3.0 * (1.0 - 2.0 * POISSON));
     exact("axial stress, oedometer [Pa]", most, 3.0 * bulk / (1.0 + 2.0 / k) * 0.01, 1e-8);
     Ok(())
-}
-
-fn said(error: impl std::fmt::Display) -> Failure {
-    Failure::Io(error.to_string())
 }
