@@ -8,6 +8,10 @@ pub(crate) mod contract;
 pub(crate) mod couplings;
 #[cfg(feature = "dem")]
 pub(crate) mod dem;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod fronts;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod grids;
 #[cfg(test)]
 mod heat;
 #[cfg(feature = "lbm")]

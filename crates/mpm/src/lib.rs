@@ -26,6 +26,7 @@ mod batch;
 mod body;
 mod changes;
 mod choice;
+mod coarse;
 mod grid;
 mod layout;
 mod ledger;

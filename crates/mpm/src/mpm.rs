@@ -206,6 +206,11 @@ impl<D: Dim> Mpm<D> {
         (0..self.len()).map(|index| (self.particles.id[index], self.particles.get(index)))
     }
 
+    /// Masses of all particles \[kg\], in the order of memory.
+    pub fn masses(&self) -> &[f64] {
+        &self.particles.mass
+    }
+
     /// The particle of a stable identifier. Searches: for a few particles.
     ///
     /// # Panics

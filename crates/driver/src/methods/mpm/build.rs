@@ -1,6 +1,6 @@
 //! From a scene to bodies and walls.
 
-use super::member::Continuum;
+use super::member::{Continuum, Made};
 use super::sample::{self, BuiltSample};
 use super::{materials, stages};
 use crate::methods::contract::Building;
@@ -51,7 +51,9 @@ pub(super) fn build<D: Dim>(
     for body in &sample.bodies {
         mpm.body(body.law, body.density, &body.particles).map_err(&mut refused).ok()?;
     }
-    Continuum::add(name, mpm, (stages, sample.column, spec.time_step), simulation, problems)
+    let grains = materials::grains::<D>(scene);
+    let made = Made { stages, column: sample.column, time_step: spec.time_step, grains };
+    Continuum::add(name, mpm, made, simulation, problems)
 }
 
 /// Walls of a continuum, and which opens at which stage.

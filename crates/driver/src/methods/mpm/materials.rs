@@ -1,7 +1,14 @@
 //! What a continuum reads of the materials of a scene: its laws are in `continua`.
 
+use crate::column::grading_of;
 use crate::problems::{Problems, nearest};
-use crate::scene::Scene;
+use crate::scene::{Sample, Scene};
+use granular_constitutive::spec::{ConstitutiveLawSpec, GrainsSpec};
+use granular_core::Dim;
+use granular_core::coarse::Constituents;
+
+/// Grains that are drawn for their mean diameter.
+const DRAWN: usize = 10_000;
 
 /// Whether there is a material of this name.
 pub(super) fn knows(scene: &Scene, path: &str, material: &str, problems: &mut Problems) -> bool {
@@ -21,6 +28,31 @@ pub(super) fn knows(scene: &Scene, path: &str, material: &str, problems: &mut Pr
 /// Friction of a wall of a material.
 pub(super) fn friction(scene: &Scene, material: &str) -> f64 {
     scene.materials.get(material).map_or(0.0, |material| material.friction)
+}
+
+/// Grains that the continuum of a scene stands for: those that its sample would be filled with, or those of a law that grows with
+/// the rate of shear; none where neither is given.
+pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<Constituents> {
+    let (material, grading) = match scene.sample.as_ref()? {
+        Sample::Column { material, grading, .. } | Sample::Cylinder { material, grading, .. } => {
+            (material, grading.as_ref())
+        }
+        Sample::Bodies(list) => (&list.first()?.material, None),
+        _ => return None,
+    };
+    let of_law = match &scene.continua.get(material)?.law {
+        ConstitutiveLawSpec::MuI { grains: GrainsSpec::Dry { diameter, density }, .. } => {
+            Some(Constituents { density: density.value(), diameter: diameter.value() })
+        }
+        _ => None,
+    };
+    of_law.or_else(|| {
+        let radii = grading_of(grading?).sample::<D>(DRAWN, 1).ok()?;
+        let weights = |power: i32| radii.iter().map(|radius| radius.powi(power)).sum::<f64>();
+        // Mean by mass, as on grids of grains.
+        let diameter = 2.0 * weights(D::N as i32 + 1) / weights(D::N as i32);
+        Some(Constituents { density: density_of_grains(scene, material)?, diameter })
+    })
 }
 
 /// Density of the grains of a material \[kg/m^3\], where a scene has grains.
