@@ -38,6 +38,7 @@ mod mpm;
 mod nodes;
 mod particle;
 mod particles;
+mod push;
 mod setup;
 mod shape;
 mod show;
@@ -54,6 +55,7 @@ pub use granular_core::walls::WallMotion;
 pub use ledger::{Energies, Losses};
 pub use mpm::{BodyId, Mpm};
 pub use particle::Particle;
+pub use push::{Push, PushProfile, Pushed, Strength, VelocityField};
 pub use setup::{ObjectiveRate, Options, Scheme, Setup, ShapeFunctions, VelocityUpdate};
 pub use wall::{Condition, Wall};
 

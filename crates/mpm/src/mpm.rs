@@ -277,17 +277,6 @@ impl<D: Dim> Mpm<D> {
     pub fn allow_any_step(&mut self) {
         self.any_step = true;
     }
-
-    /// Adds a velocity \[m/s\] to each particle of a body, by where it is.
-    pub fn add_velocities(&mut self, body: BodyId, velocity: impl Fn(D::Vec) -> D::Vec) {
-        self.injected -= self.energies().translational();
-        let starts = &self.groups[body.0].starts;
-        for k in starts[0] as usize..starts[starts.len() - 1] as usize {
-            self.particles.velocity[k] += velocity(self.particles.position[k]);
-            self.fastest = self.fastest.max(self.particles.velocity[k].length());
-        }
-        self.injected += self.energies().translational();
-    }
 }
 
 /// Width of a particle of some volume, in cells.

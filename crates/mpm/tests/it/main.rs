@@ -11,5 +11,6 @@ static ALLOCATOR: CountingAllocator = CountingAllocator::new();
 mod balance;
 mod closed_forms;
 mod contract;
+mod pushes;
 mod robust;
 mod sample;
