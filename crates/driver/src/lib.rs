@@ -34,6 +34,8 @@ pub mod sweep;
 mod walls;
 
 pub use effort::Effort;
+#[cfg(feature = "mpm")]
+pub use methods::mpm::element;
 
 /// Scenes to start from: name and text. The first line of each is a comment that describes it.
 pub const TEMPLATES: &[(&str, &str)] = &[

@@ -18,7 +18,7 @@ mod heat;
 mod lbm;
 pub(crate) mod member;
 #[cfg(feature = "mpm")]
-mod mpm;
+pub(crate) mod mpm;
 pub(crate) mod parts;
 pub(crate) mod specs;
 mod table;

@@ -5,6 +5,8 @@ mod bench;
 #[cfg(feature = "dem")]
 mod calibrate;
 mod compare;
+#[cfg(feature = "mpm")]
+mod element;
 mod plot;
 mod summary;
 mod sweep;
@@ -106,6 +108,9 @@ enum Verb {
     #[cfg(feature = "dem")]
     #[command(subcommand)]
     Calibrate(calibrate::Calibrate),
+    /// Lead one point of a continuum along a path of strain: its stress and volume as a table and a figure.
+    #[cfg(feature = "mpm")]
+    Element(element::Element),
     /// Measure error against run time, or speed.
     #[cfg(feature = "studies")]
     #[command(subcommand)]
@@ -194,6 +199,8 @@ impl Verb {
             Self::Bench(verb) => verb.execute(common),
             #[cfg(feature = "dem")]
             Self::Calibrate(calibrate) => calibrate.execute(common),
+            #[cfg(feature = "mpm")]
+            Self::Element(verb) => verb.execute(common),
             #[cfg(feature = "studies")]
             Self::Validate(verb) => verb.execute(common),
             Self::Info { path } => info(common, path.as_deref()),

@@ -1,6 +1,7 @@
 //! The material point method, for a continuum.
 
 mod build;
+pub mod element;
 mod materials;
 mod member;
 mod sample;

@@ -8,6 +8,8 @@ mod command_bad_input;
 mod command_boundaries;
 mod command_coarse;
 mod command_disk;
+#[cfg(feature = "mpm")]
+mod command_element;
 mod command_empty;
 mod command_figures;
 mod command_files;

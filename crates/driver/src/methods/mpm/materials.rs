@@ -3,12 +3,19 @@
 use crate::column::grading_of;
 use crate::problems::{Problems, nearest};
 use crate::scene::{Sample, Scene};
-use granular_constitutive::spec::{ConstitutiveLawSpec, GrainsSpec};
+use granular_constitutive::AnyLaw;
+use granular_constitutive::spec::{ConstitutiveLawSpec, ContinuumSpec, GrainsSpec};
 use granular_core::Dim;
 use granular_core::coarse::Constituents;
 
 /// Grains that are drawn for their mean diameter.
 const DRAWN: usize = 10_000;
+
+/// The law of a continuum with a density \[kg/m^3\], or what is wrong with its values, told at a path.
+pub(super) fn law(spec: &ContinuumSpec, density: f64, path: &str, problems: &mut Problems) -> Option<AnyLaw> {
+    let law = AnyLaw::from_spec(&spec.law, density);
+    law.map_err(|error| problems.add(path, format!("refused: {error}"), error.allowed, "")).ok()
+}
 
 /// Whether there is a material of this name.
 pub(super) fn knows(scene: &Scene, path: &str, material: &str, problems: &mut Problems) -> bool {

@@ -140,10 +140,8 @@ fn continuum<D: Dim>(
             return None;
         }
     };
-    let law = AnyLaw::from_spec(&spec.law, density).map_err(|error| {
-        problems.add(format!("{place}.law"), format!("refused: {error}"), error.allowed, "");
-    });
-    Some((law.ok()?, density))
+    let law = materials::law(spec, density, &format!("{place}.law"), problems);
+    Some((law?, density))
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
