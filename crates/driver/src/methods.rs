@@ -20,6 +20,8 @@ pub(crate) mod member;
 #[cfg(feature = "mpm")]
 pub(crate) mod mpm;
 pub(crate) mod parts;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod push;
 pub(crate) mod specs;
 mod table;
 pub(crate) mod unused;

@@ -51,11 +51,12 @@ mod turning;
 mod wall;
 
 pub use choice::BodyLaw;
+pub use granular_core::push::{Push, PushProfile, Strength};
 pub use granular_core::walls::WallMotion;
 pub use ledger::{Energies, Losses};
 pub use mpm::{BodyId, Mpm};
 pub use particle::Particle;
-pub use push::{Push, PushProfile, Pushed, Strength, VelocityField};
+pub use push::{Pushed, VelocityField};
 pub use setup::{ObjectiveRate, Options, Scheme, Setup, ShapeFunctions, VelocityUpdate};
 pub use wall::{Condition, Wall};
 

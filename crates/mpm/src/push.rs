@@ -4,6 +4,7 @@
 
 use crate::mpm::{BodyId, Mpm};
 use granular_core::matrix::Matrix;
+use granular_core::push::{Push, Strength, speed_for_energy};
 use granular_core::{Blocks, Dim, Linear, SetupError, Vector};
 
 /// Particles whose momenta are summed at once.
@@ -32,38 +33,6 @@ impl<D: Dim> VelocityField<D> {
     }
 }
 
-/// How strong a push is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Strength {
-    /// Velocity of the particles that it moves fastest \[m/s\]; below zero against the direction.
-    Speed(f64),
-    /// Kinetic energy that all particles get together \[J; J/m in the plane\].
-    Energy(f64),
-}
-
-/// How a push is spread over the height of the particles that get it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PushProfile {
-    /// The same velocity for all.
-    #[default]
-    Uniform,
-    /// In proportion to the depth below the highest particle: most for the lowest, nothing for the highest, as from a quake along the
-    /// bottom \[Kumar2014, section 4.4\].
-    Gradient,
-}
-
-/// A velocity $u_p = k s_p e$ that particles get beside the one they have: $e$ is the direction, $s_p$ from 0 to 1 the profile.
-/// A speed is $k$ itself; for an energy, motion that is left from before counts, so that the kinetic energy grows by it to round-off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Push<D: Dim> {
-    /// Where to, of any length.
-    pub direction: D::Vec,
-    /// How strong.
-    pub strength: Strength,
-    /// How it is spread over the height.
-    pub profile: PushProfile,
-}
-
 /// What a change of velocities did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pushed<D: Dim> {
@@ -75,28 +44,6 @@ pub struct Pushed<D: Dim> {
     pub speed: f64,
     /// Particles that got it.
     pub particles: usize,
-}
-
-impl<D: Dim> Push<D> {
-    fn check(&self) -> Result<(), SetupError> {
-        let length = self.direction.length();
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(SetupError::new(
-                "length of the direction of a push",
-                length,
-                "above zero and finite",
-            ));
-        }
-        match self.strength {
-            Strength::Speed(speed) if !speed.is_finite() => {
-                Err(SetupError::new("speed of a push", speed, "finite"))
-            }
-            Strength::Energy(energy) if !(energy >= 0.0 && energy.is_finite()) => {
-                Err(SetupError::new("energy of a push", energy, "zero or more, and finite"))
-            }
-            _ => Ok(()),
-        }
-    }
 }
 
 impl<D: Dim> Mpm<D> {
@@ -140,17 +87,22 @@ impl<D: Dim> Mpm<D> {
         push.check()?;
         let chosen = self.chosen(region);
         let (particles, direction) = (&self.particles, push.direction * (1.0 / push.direction.length()));
-        let shares = self.shares(&chosen, push.profile);
+        let heights: Vec<f64> = chosen.iter().map(|&k| particles.position[k].component(D::UP)).collect();
+        let shares = push.profile.shares(&heights);
         let sum = |of: &(dyn Fn(usize, f64) -> f64 + Sync)| {
             let blocks = Blocks::new(chosen.len(), BLOCK);
             blocks.sum(|n| particles.mass[chosen[n]] * of(chosen[n], shares[n]))
         };
         let speed = match push.strength {
             Strength::Speed(speed) => speed,
+            Strength::EnergyPerGrain(energy) => {
+                let allowed = "a speed or an energy: a continuum has no grains";
+                return Err(SetupError::new("energy per grain of a push", energy, allowed));
+            }
             Strength::Energy(_) if chosen.is_empty() => 0.0,
             Strength::Energy(energy) => {
                 let before = sum(&|k, share| share * particles.velocity[k].dot(direction));
-                larger_root(sum(&|_, share| 0.5 * share * share), before, energy)
+                speed_for_energy(sum(&|_, share| 0.5 * share * share), before, energy)
             }
         };
         let mut shares = shares.into_iter();
@@ -166,18 +118,6 @@ impl<D: Dim> Mpm<D> {
         };
         let all = self.groups.iter().enumerate().flat_map(of_body);
         all.filter(|&(body, k)| region(body, self.particles.position[k])).map(|(_, k)| k).collect()
-    }
-
-    /// Share of the largest velocity that each particle gets. Particles that are all at one height are all lowest.
-    fn shares(&self, chosen: &[usize], profile: PushProfile) -> Vec<f64> {
-        let height = |k: usize| self.particles.position[k].component(D::UP);
-        let heights = || chosen.iter().map(|&k| height(k));
-        let (top, bottom) = (heights().fold(f64::MIN, f64::max), heights().fold(f64::MAX, f64::min));
-        let share = |k: usize| match profile {
-            PushProfile::Gradient if top > bottom => (top - height(k)) / (top - bottom),
-            PushProfile::Uniform | PushProfile::Gradient => 1.0,
-        };
-        chosen.iter().map(|&k| share(k)).collect()
     }
 
     /// Adds to velocities, asked for in the order of memory; the ledger counts the energy as put in.
@@ -203,15 +143,5 @@ impl<D: Dim> Mpm<D> {
         }
         self.injected += pushed.energy;
         Ok(pushed)
-    }
-}
-
-/// The larger root k of `a k^2 + b k = c`, without loss of digits; zero for `c = 0`.
-fn larger_root(a: f64, b: f64, c: f64) -> f64 {
-    let root = (b * b + 4.0 * a * c).sqrt();
-    match () {
-        () if c == 0.0 => 0.0,
-        () if b > 0.0 => 2.0 * c / (b + root),
-        () => (root - b) / (2.0 * a),
     }
 }

@@ -27,6 +27,7 @@ impl Claims for MpmSpec {
         Part::StageStep,
         Part::Quiet,
         Part::BodyChanges,
+        Part::Pushes,
     ];
     const STEP_KEY: &'static str = "courant";
 }

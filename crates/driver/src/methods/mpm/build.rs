@@ -30,7 +30,8 @@ pub(super) fn build<D: Dim>(
     let sample = sample::bodies::<D>(scene, name, spec, problems);
     let (walls, openings) = boundaries::<D>(scene, name, spec, sample.as_ref(), problems);
     let names: Vec<&str> = walls.iter().map(|wall| wall.name.as_str()).collect();
-    let stages = stages::actions::<D>(scene, &openings, &names, problems);
+    let grains = materials::grains::<D>(scene);
+    let stages = stages::actions::<D>((scene, name), &openings, &names, (grains.is_some(), problems));
     if let Some(step) = spec.time_step.filter(|step| step.value() <= 0.0) {
         problems.add(format!("solvers.{name}.time_step"), step, "a positive time", "");
     }
@@ -51,7 +52,6 @@ pub(super) fn build<D: Dim>(
     for body in &sample.bodies {
         mpm.body(body.law, body.density, &body.particles).map_err(&mut refused).ok()?;
     }
-    let grains = materials::grains::<D>(scene);
     let made = Made { stages, column: sample.column, time_step: spec.time_step, grains };
     Continuum::add(name, mpm, made, simulation, problems)
 }

@@ -88,6 +88,13 @@ impl<D: Dim> Continuum<D> {
     }
 }
 
+impl<D: Dim> Continuum<D> {
+    /// Mean diameter of the grains \[m\]; the edge of a cell where nobody names them.
+    fn diameter(&self, mpm: &Mpm<D>) -> f64 {
+        self.grains.map_or(mpm.cell(), |grains| grains.diameter)
+    }
+}
+
 /// Energies of a continuum, for the figure of them.
 const ENERGIES: &[&str] = &[
     "potential_energy",
@@ -137,8 +144,20 @@ impl<D: Dim> Member for Continuum<D> {
 
     fn begin(&self, simulation: &mut Simulation, stage: usize) -> Notes {
         let mpm = simulation.get_mut(self.key);
-        self.stages[stage].iter().for_each(|action| stages::apply(action, mpm));
-        Notes::default()
+        let diameter = self.diameter(mpm);
+        let mut push = None;
+        self.stages[stage].iter().for_each(|action| stages::apply(action, mpm, diameter, &mut push));
+        Notes { push }
+    }
+
+    fn announced(&self, simulation: &Simulation, stage: usize) -> Vec<String> {
+        let mpm = simulation.get(self.key);
+        let target = stages::target(mpm, self.diameter(mpm));
+        let pushes = self.stages[stage].iter().filter_map(|action| match action {
+            Action::Push(push) => Some(push.described(target)),
+            _ => None,
+        });
+        pushes.collect()
     }
 
     fn is_metric(&self, number: &str) -> bool {

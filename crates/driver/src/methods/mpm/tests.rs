@@ -99,3 +99,39 @@ fn bodies_that_touch_share_no_particle_and_miss_none() {
     let momentum = model.number("momentum_x").unwrap();
     assert!((momentum / (1600.0 * 0.02) - 1.0).abs() < 0.02, "{momentum}");
 }
+
+#[test]
+fn a_push_gives_its_energy_and_needs_to_know_grains_for_units_of_theirs() {
+    let push = |text: &str| format!("stages.0.changes=[Push({text})]");
+    let (_, mut model) = check::read(&scene(&[&push("energy: 3, profile: Gradient")])).unwrap();
+    let member = model.members[0].clone();
+    assert!(member.announced(&model.simulation, 0)[0].contains("3.0000 J in all"));
+    let pushed = member.begin(&mut model.simulation, 0).push.unwrap();
+    assert!((pushed.energy - 3.0).abs() < 1e-12);
+    assert!((model.number("kinetic_energy").unwrap() - 3.0).abs() < 1e-12);
+    assert!((model.number("momentum_x").unwrap() - pushed.momentum).abs() < 1e-12 * pushed.momentum);
+    let found = problems(&[&push("energy_per_grain: 8")]);
+    for words in ["stages.0.changes.0.energy_per_grain", "nobody names", "grading"] {
+        assert!(found.contains(words), "{words}: {found}");
+    }
+    // Of 1 mm and 2600 kg/m^3 the unit is the weight of all times 1 mm.
+    let grains = ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    let (_, mut model) = check::read(&scene(&[&push("energy_per_grain: 8"), grains[0], grains[1]])).unwrap();
+    let pushed = model.members[0].clone().begin(&mut model.simulation, 0).push.unwrap();
+    assert!((pushed.energy / (8.0 * 32.0 * 9.81 * 1e-3) - 1.0).abs() < 1e-12, "{}", pushed.energy);
+}
+
+#[test]
+fn grids_show_the_solid_fraction_only_of_known_grains() {
+    let output = |field: &str| {
+        format!(
+            "outputs.0=(every: Time(\"1 ms\"), write: Fields(path: \"means\", fields: [\"{field}\"],
+                grid: (from: [0, 0], to: [\"0.1 m\", \"0.2 m\"], spacing: \"10 mm\")))"
+        )
+    };
+    assert_eq!(problems(&[&output("inertial_number")]).matches("`inertial_number`").count(), 1);
+    assert_eq!(problems(&[&output("shear_rate")]), "[]");
+    let grains = ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    assert_eq!(problems(&[&output("inertial_number"), grains[0], grains[1]]), "[]");
+    assert!(problems(&[&output("coordination"), grains[0], grains[1]]).contains("`coordination`"));
+}
