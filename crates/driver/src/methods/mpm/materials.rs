@@ -37,9 +37,18 @@ pub(super) fn friction(scene: &Scene, material: &str) -> f64 {
     scene.materials.get(material).map_or(0.0, |material| material.friction)
 }
 
+/// Grains that a continuum stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct KnownGrains {
+    /// What grids need, with the mean diameter by mass.
+    pub(super) constituents: Constituents,
+    /// Mean diameter by number \[m\], in which pushes are measured.
+    pub(super) mean_diameter: f64,
+}
+
 /// Grains that the continuum of a scene stands for: those that its sample would be filled with, or those of a law that grows with
 /// the rate of shear; none where neither is given.
-pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<Constituents> {
+pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<KnownGrains> {
     let (material, grading) = match scene.sample.as_ref()? {
         Sample::Column { material, grading, .. } | Sample::Cylinder { material, grading, .. } => {
             (material, grading.as_ref())
@@ -49,7 +58,8 @@ pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<Constituents> {
     };
     let of_law = match &scene.continua.get(material)?.law {
         ConstitutiveLawSpec::MuI { grains: GrainsSpec::Dry { diameter, density }, .. } => {
-            Some(Constituents { density: density.value(), diameter: diameter.value() })
+            let [density, diameter] = [density.value(), diameter.value()];
+            Some(KnownGrains { constituents: Constituents { density, diameter }, mean_diameter: diameter })
         }
         _ => None,
     };
@@ -58,7 +68,8 @@ pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<Constituents> {
         let weights = |power: i32| radii.iter().map(|radius| radius.powi(power)).sum::<f64>();
         // Mean by mass, as on grids of grains.
         let diameter = 2.0 * weights(D::N as i32 + 1) / weights(D::N as i32);
-        Some(Constituents { density: density_of_grains(scene, material)?, diameter })
+        let constituents = Constituents { density: density_of_grains(scene, material)?, diameter };
+        Some(KnownGrains { constituents, mean_diameter: 2.0 * weights(1) / weights(0) })
     })
 }
 

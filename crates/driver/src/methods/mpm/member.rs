@@ -1,5 +1,6 @@
 //! A continuum as a member of a simulation.
 
+use super::materials::KnownGrains;
 use super::stages::{self, Action};
 use crate::column::ColumnSize;
 use crate::methods::contract::{Building, Claims};
@@ -55,7 +56,7 @@ pub(super) struct Continuum<D: Dim> {
     column: Option<ColumnSize>,
     time_step: Option<f64>,
     /// Grains that it stands for, where the scene says.
-    grains: Option<Constituents>,
+    grains: Option<KnownGrains>,
 }
 
 /// What a scene makes of a continuum, besides the solver.
@@ -63,7 +64,7 @@ pub(super) struct Made<D: Dim> {
     pub(super) stages: Vec<Vec<Action<D>>>,
     pub(super) column: Option<ColumnSize>,
     pub(super) time_step: Option<Time>,
-    pub(super) grains: Option<Constituents>,
+    pub(super) grains: Option<KnownGrains>,
 }
 
 impl<D: Dim> Continuum<D> {
@@ -91,7 +92,7 @@ impl<D: Dim> Continuum<D> {
 impl<D: Dim> Continuum<D> {
     /// Mean diameter of the grains \[m\]; the edge of a cell where nobody names them.
     fn diameter(&self, mpm: &Mpm<D>) -> f64 {
-        self.grains.map_or(mpm.cell(), |grains| grains.diameter)
+        self.grains.map_or(mpm.cell(), |grains| grains.mean_diameter)
     }
 }
 
@@ -135,7 +136,11 @@ impl<D: Dim> Member for Continuum<D> {
     }
 
     fn averages(&self, spec: &GridSpec) -> Result<Box<dyn Averages>, NoGrid> {
-        Ok(Box::new(Grid { cells: coarse_grid::<D>(spec)?, key: self.key, grains: self.grains }))
+        Ok(Box::new(Grid {
+            cells: coarse_grid::<D>(spec)?,
+            key: self.key,
+            grains: self.grains.map(|grains| grains.constituents),
+        }))
     }
 
     fn offers(&self, part: Part) -> bool {
