@@ -41,6 +41,10 @@ pub struct Losses {
     pub damping: f64,
     /// To the share of PIC in the velocity update.
     pub pic: f64,
+    /// To friction of bodies in contact.
+    pub contact_friction: f64,
+    /// To stopping of bodies in contact that approach.
+    pub contact_stopping: f64,
 }
 
 impl Losses {
@@ -49,13 +53,15 @@ impl Losses {
         self.to_array().iter().sum()
     }
 
-    pub(crate) fn to_array(self) -> [f64; 6] {
-        let Self { plastic, viscous, friction, stopping, damping, pic } = self;
-        [plastic, viscous, friction, stopping, damping, pic]
+    pub(crate) fn to_array(self) -> [f64; 8] {
+        let Self { plastic, viscous, friction, stopping, damping, pic, contact_friction, contact_stopping } =
+            self;
+        [plastic, viscous, friction, stopping, damping, pic, contact_friction, contact_stopping]
     }
 
-    pub(crate) fn from_array([plastic, viscous, friction, stopping, damping, pic]: [f64; 6]) -> Self {
-        Self { plastic, viscous, friction, stopping, damping, pic }
+    pub(crate) fn from_array(losses: [f64; 8]) -> Self {
+        let [plastic, viscous, friction, stopping, damping, pic, contact_friction, contact_stopping] = losses;
+        Self { plastic, viscous, friction, stopping, damping, pic, contact_friction, contact_stopping }
     }
 }
 

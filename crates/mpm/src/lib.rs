@@ -27,6 +27,7 @@ mod body;
 mod changes;
 mod choice;
 mod coarse;
+mod contact;
 mod grid;
 mod layout;
 mod ledger;
@@ -51,6 +52,7 @@ mod turning;
 mod wall;
 
 pub use choice::BodyLaw;
+pub use contact::Contact;
 pub use granular_core::push::{Push, PushProfile, Strength};
 pub use granular_core::walls::WallMotion;
 pub use ledger::{Energies, Losses};

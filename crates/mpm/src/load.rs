@@ -72,3 +72,27 @@ pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>
         rows[3][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xz[k], scale * yz[k], scale * zz[k], 0.0]);
     }
 }
+
+/// Lays out where a body ends near nodes: the gradient of its volume, in proportion to the derivatives of shape functions, which points out of
+/// the body and is as long as its surface near a node is large; then, in proportion to their values, the moment of its volume, in cells from
+/// the origin of the lattice, and its volume.
+pub(crate) fn load_outline<D: Dim>(
+    rows: &mut [[Node; BATCH]; 4],
+    givers: &Givers<'_, D>,
+    (origin, per_cell): (D::Vec, f64),
+) {
+    let (position, volume) = (givers.position, givers.volume);
+    for ((node, &position), &volume) in rows[0].iter_mut().zip(position).zip(volume) {
+        *node = Node::ZERO;
+        for axis in 0..D::N {
+            node.0[D::N + axis] = (position - origin).component(axis) * (per_cell * volume);
+        }
+        node.0[2 * D::N] = volume;
+    }
+    for (axis, row) in rows[1..].iter_mut().enumerate() {
+        for (node, volume) in row.iter_mut().zip(volume) {
+            *node = Node::ZERO;
+            node.0[axis] = volume * per_cell;
+        }
+    }
+}

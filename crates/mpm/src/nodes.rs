@@ -38,7 +38,7 @@ pub(crate) struct Touch<D: Dim> {
 /// All nodes that walls act on, block by block.
 #[derive(Clone, Debug)]
 pub(crate) struct Touches<D: Dim> {
-    /// Where those of each block begin, and the end of the last.
+    /// Where those of each block begin, and the end of the last; a block has them once for every field.
     pub(crate) starts: Vec<u32>,
     pub(crate) list: Vec<Touch<D>>,
     /// Version of the grid for which they were found; none when they must be found anew.
@@ -65,7 +65,8 @@ impl<D: Dim> Touches<D> {
         self.list.clear();
         let rests = Pose::default();
         for &block in grid.blocks() {
-            self.starts.push(self.list.len() as u32);
+            let first = self.list.len();
+            self.starts.push(first as u32);
             for node in 0..block_cells::<D>() {
                 let at = grid.lattice.node(block, node);
                 for (wall, description) in walls.iter().enumerate().filter(|(_, wall)| !wall.open) {
@@ -86,6 +87,8 @@ impl<D: Dim> Touches<D> {
                     });
                 }
             }
+            let of_one_field = first..self.list.len();
+            (1..grid.fields).for_each(|_| self.list.extend_from_within(of_one_field.clone()));
         }
         self.starts.push(self.list.len() as u32);
     }

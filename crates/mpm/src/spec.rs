@@ -30,6 +30,10 @@ pub struct MpmSpec {
     /// What walls do; by default all are rough with the friction of their material.
     #[serde(default)]
     pub walls: std::collections::BTreeMap<String, ConditionSpec>,
+    /// Bodies that may part and slide along one another: contacts between all bodies of two continua, or among those of one. Bodies that are in
+    /// no contact stick where they meet.
+    #[serde(default)]
+    pub contacts: Vec<ContactSpec>,
     /// Horizontal over vertical stress at the start, where the weight above makes the vertical one; without it there is no
     /// stress at the start.
     #[serde(default)]
@@ -116,6 +120,16 @@ pub enum ConditionSpec {
         #[serde(default)]
         static_friction: Option<f64>,
     },
+}
+
+/// A contact between bodies: `(between: ("sand", "block"), friction: 0.4)`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactSpec {
+    /// Names of the two continua, which may be the same.
+    pub between: (String, String),
+    /// Coefficient of friction; 0 for none.
+    pub friction: f64,
 }
 
 impl MpmSpec {

@@ -48,6 +48,7 @@ impl<D: Dim> Mpm<D> {
             self.walls.iter().for_each(|wall| put(numbers_of(wall.condition)));
         });
         to.put("forces on walls", &self.wall_forces);
+        self.contacts.save(to);
         self.clock.save(to);
         self.moving.save(to);
     }
@@ -69,7 +70,7 @@ impl<D: Dim> Mpm<D> {
         for (group, looseness) in self.groups.iter_mut().zip(looseness) {
             group.looseness = looseness;
         }
-        let losses = numbers(LOSSES, 6)?;
+        let losses = numbers(LOSSES, 8)?;
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
         self.injected = numbers("energy put in", 1)?[0];
         self.options.local_damping = numbers("local damping", 1)?[0];
@@ -84,6 +85,7 @@ impl<D: Dim> Mpm<D> {
         }
         self.wall_forces = from.array_of("forces on walls", self.walls.len())?;
         check_entry("forces on walls", self.wall_forces.iter().all(|force| force.is_finite()))?;
+        self.contacts.restore(from)?;
         self.clock.restore(from)?;
         self.moving.restore(from)?;
         self.moving.place(self.clock.time());

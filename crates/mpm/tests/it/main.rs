@@ -10,6 +10,7 @@ static ALLOCATOR: CountingAllocator = CountingAllocator::new();
 
 mod balance;
 mod closed_forms;
+mod contacts;
 mod contract;
 mod pushes;
 mod robust;
