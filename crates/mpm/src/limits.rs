@@ -107,6 +107,7 @@ impl<D: Dim> Mpm<D> {
         leave_out(D::N == 2, "stresses xz and yz: plane strain");
         leave_out(!self.options.ledger, "losses of energy: no ledger");
         leave_out(self.moving.is_empty(), "poses of walls: none moves");
+        leave_out(self.particles.load.is_empty(), "forces on particles: no traction");
         leave_out(self.contacts.is_empty(), "velocities of each body on nodes: none are in contact");
         let nodes_each = nodes / self.len().max(1);
         Memory { bytes: each * self.len() + nodes, bytes_per_item: each + nodes_each, left_out }

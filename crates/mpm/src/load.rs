@@ -16,6 +16,8 @@ pub(crate) struct Givers<'a, D: Dim> {
     pub(crate) stress: [&'a [f64]; 6],
     /// Empty unless shape functions have a width.
     pub(crate) width: &'a [f64],
+    /// Forces from outside; empty unless there are any.
+    pub(crate) load: &'a [D::Vec],
 }
 
 impl<D: Dim> Givers<'_, D> {
@@ -29,12 +31,13 @@ impl<D: Dim> Givers<'_, D> {
             volume: &self.volume[from..to],
             stress: self.stress.map(|component| component.get(from..to).unwrap_or(&[])),
             width: self.width.get(from..to).unwrap_or(&[]),
+            load: self.load.get(from..to).unwrap_or(&[]),
         }
     }
 }
 
 /// Lays out what particles give: mass and momentum in proportion to the values of shape functions, and with a number of cells per
-/// metre the force `-V s` in proportion to their derivatives by places in cells.
+/// metre forces from outside likewise, and the force `-V s` in proportion to their derivatives by places in cells.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>, force: Option<f64>) {
     let count = givers.mass.len().min(BATCH);
@@ -54,6 +57,11 @@ pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>
         }
         return;
     };
+    for (row, &load) in rows[0].iter_mut().zip(givers.load) {
+        for axis in 0..D::N {
+            row.0[1 + D::N + axis] = load.component(axis);
+        }
+    }
     let [xx, yy, zz, xy, yz, xz] = givers.stress;
     let (xx, yy, xy) = (&xx[..count], &yy[..count], &xy[..count]);
     if D::N == 2 {

@@ -7,7 +7,7 @@ use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, Sy
 
 type Entry = (&'static str, &'static str, &'static str);
 
-const NUMBERS: [Entry; 22] = [
+const NUMBERS: [Entry; 23] = [
     (
         "front",
         "m",
@@ -27,6 +27,7 @@ const NUMBERS: [Entry; 22] = [
     ("loss_stopping_at_walls", "J", "energy lost where walls stop what moves into them"),
     ("loss_sliding_at_contacts", "J", "energy lost to friction between bodies in contact"),
     ("loss_stopping_at_contacts", "J", "energy lost where bodies in contact approach"),
+    ("loss_absorbed", "J", "energy lost to walls that absorb waves"),
     ("loss_local_damping", "J", "energy lost to local damping"),
     ("loss_pic", "J", "energy lost to PIC in the velocity update"),
     ("energy_residual", "J", "energy that the ledger misses"),
@@ -153,6 +154,7 @@ impl<D: Dim> Mpm<D> {
             "loss_stopping_at_walls" => self.losses.stopping,
             "loss_sliding_at_contacts" => self.losses.contact_friction,
             "loss_stopping_at_contacts" => self.losses.contact_stopping,
+            "loss_absorbed" => self.losses.absorbed,
             "loss_local_damping" => self.losses.damping,
             "loss_pic" => self.losses.pic,
             "energy_residual" => self.energy_residual().unwrap_or(f64::NAN),

@@ -143,6 +143,7 @@ impl<D: Dim> Mpm<D> {
             local_damping: self.options.local_damping,
             least_mass: LEAST_MASS * self.heaviest,
             walls: &walls,
+            dt_per_cell: dt / self.grid.lattice.cell,
         };
         self.damped.resize(self.grid.node_blocks().count(), 0.0);
         if self.grid.fields > 1 {
@@ -219,6 +220,7 @@ impl<D: Dim> Mpm<D> {
             if self.options.ledger {
                 self.losses.friction += touch.lost[0];
                 self.losses.stopping += touch.lost[1];
+                self.losses.absorbed += touch.lost[2];
                 work += touch.impulse().dot(touch.velocity);
             }
         }
@@ -269,10 +271,17 @@ pub(crate) struct NodeRule<'a, D: Dim> {
     gravity: D::Vec,
     pub(crate) local_damping: f64,
     least_mass: f64,
-    pub(crate) walls: &'a [Wall<D>],
+    walls: &'a [Wall<D>],
+    /// Step over the edge of a cell \[s/m\].
+    dt_per_cell: f64,
 }
 
 impl<D: Dim> NodeRule<'_, D> {
+    /// Walls at a node with a mass.
+    pub(crate) fn meeting<'t>(&'t self, touches: &'t mut [Touch<D>], mass: f64) -> Meeting<'t, D> {
+        Meeting { touches, walls: self.walls, mass, dt_per_cell: self.dt_per_cell }
+    }
+
     /// Mean velocity of what is on a node, and its change by forces; none on an empty node.
     pub(crate) fn mean(&self, sum: &Node) -> Option<(D::Vec, D::Vec)> {
         let mass = sum.0[0];
@@ -291,8 +300,7 @@ impl<D: Dim> NodeRule<'_, D> {
         touches.iter_mut().for_each(Touch::rest);
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let mut meeting =
-                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let mut meeting = self.meeting(touching.of(node, touches), sum.0[0]);
             let Some((mean, change)) = self.mean(sum) else {
                 *motion = Node::ZERO;
                 continue;
@@ -326,8 +334,7 @@ impl<D: Dim> NodeRule<'_, D> {
     ) {
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let mut meeting =
-                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let mut meeting = self.meeting(touching.of(node, touches), sum.0[0]);
             let now = self.mean(sum).map_or(D::Vec::ZERO, |(mean, change)| {
                 if anew {
                     meeting.act(mean, change);

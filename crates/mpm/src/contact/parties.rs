@@ -126,11 +126,8 @@ impl<D: Dim> ContactRule<'_, D> {
 
     fn meeting(&mut self, party: &Party<D>, touching: &Range<usize>) -> Meeting<'_, D> {
         let first = party.field * (self.touches.len() / self.fields);
-        Meeting {
-            touches: &mut self.touches[first + touching.start..first + touching.end],
-            walls: self.rule.walls,
-            mass: party.mass,
-        }
+        let own = first + touching.start..first + touching.end;
+        self.rule.meeting(&mut self.touches[own], party.mass)
     }
 
     /// The fields that have mass at a node; the motion of the others becomes zero.

@@ -9,6 +9,7 @@ use granular_core::testing::CountingAllocator;
 static ALLOCATOR: CountingAllocator = CountingAllocator::new();
 
 mod balance;
+mod boundaries;
 mod closed_forms;
 mod contacts;
 mod contract;
