@@ -123,7 +123,8 @@ fn a_push_gives_its_energy_and_needs_to_know_grains_for_units_of_theirs() {
         assert!(found.contains(words), "{words}: {found}");
     }
     // Of 1 mm and 2600 kg/m^3 the unit is the weight of all times 1 mm.
-    let grains = ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    let grains =
+        ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
     let (_, mut model) = check::read(&scene(&[&push("energy_per_grain: 8"), grains[0], grains[1]])).unwrap();
     let pushed = model.members[0].clone().begin(&mut model.simulation, 0).push.unwrap();
     assert!((pushed.energy / (8.0 * 32.0 * 9.81 * 1e-3) - 1.0).abs() < 1e-12, "{}", pushed.energy);
@@ -139,7 +140,8 @@ fn grids_show_the_solid_fraction_only_of_known_grains() {
     };
     assert_eq!(problems(&[&output("inertial_number")]).matches("`inertial_number`").count(), 1);
     assert_eq!(problems(&[&output("shear_rate")]), "[]");
-    let grains = ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    let grains =
+        ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
     assert_eq!(problems(&[&output("inertial_number"), grains[0], grains[1]]), "[]");
     assert!(problems(&[&output("coordination"), grains[0], grains[1]]).contains("`coordination`"));
 }
