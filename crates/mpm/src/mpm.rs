@@ -1,6 +1,7 @@
 //! The solver.
 
 use crate::choice::{BodyLaw, Kernels, kernels};
+use crate::contact::Contacts;
 use crate::grid::Grid;
 use crate::layout::{Lattice, Node, TileShape};
 use crate::ledger::Losses;
@@ -39,6 +40,7 @@ pub struct Mpm<D: Dim> {
     pub(crate) particles: Particles<D>,
     pub(crate) groups: Vec<Group<D>>,
     pub(crate) sorting: Sorting<D>,
+    pub(crate) contacts: Contacts<D>,
     /// Mass of the heaviest particle.
     pub(crate) heaviest: f64,
     pub(crate) watches: Vec<Watch>,
@@ -82,6 +84,7 @@ impl<D: Dim> Mpm<D> {
             particles: Particles::default(),
             groups: Vec::new(),
             sorting: Sorting::default(),
+            contacts: Contacts::default(),
             heaviest: 0.0,
             watches: Vec::new(),
             damped: Vec::new(),
@@ -129,7 +132,10 @@ impl<D: Dim> Mpm<D> {
             self.fastest = self.fastest.max(particle.velocity.length());
         }
         let starts = vec![first, self.particles.len() as u32];
-        self.groups.push(Group { body, density, starts, looseness: 1.0 });
+        self.groups.push(Group { body, density, starts, looseness: 1.0, field: 0 });
+        if !self.contacts.is_empty() {
+            self.lay_out_fields();
+        }
         self.injected += self.energy_of_group(self.groups.len() - 1).mechanical();
         self.sort().map_err(|_| SetupError::new("place", f64::NAN, "within 2^31 cells of the origin"))?;
         Ok(BodyId(self.groups.len() - 1))

@@ -56,7 +56,7 @@ fn a_column_is_filled_as_it_is_described() {
 fn what_cannot_be_is_refused_where_it_stands() {
     let law = "continua.sand.law=MohrCoulomb(young_modulus: 1e6, poisson_ratio: NU, friction_angle: \"PHI\", dilation_angle: \"PSI\")";
     let of = |nu: &str, phi: &str, psi: &str| law.replace("NU", nu).replace("PHI", phi).replace("PSI", psi);
-    let cases: [(&[&str], &[&str]); 10] = [
+    let cases: [(&[&str], &[&str]); 12] = [
         (&[&of("0.5", "30 deg", "0 deg")], &["continua.sand.law", "Poisson's ratio is 0.5", "0.5"]),
         (&[&of("0.3", "90 deg", "0 deg")], &["continua.sand.law", "angle of friction", "less than 90"]),
         (&[&of("0.3", "20 deg", "25 deg")], &["continua.sand.law", "dilation", "angle of friction"]),
@@ -66,6 +66,14 @@ fn what_cannot_be_is_refused_where_it_stands() {
         (&["solvers.soil.cell=\"0.15 m\""], &["solvers.soil.cell", "smaller than the sample"]),
         (&["solvers.soil.walls={ \"flor\": Slip }"], &["solvers.soil.walls", "`flor`", "floor"]),
         (&["walls.0=Floor(material: \"smooth\")"], &["walls.0.material", "`smooth`", "rough"]),
+        (
+            &["solvers.soil.contacts=[(between: (\"sand\", \"rock\"), friction: 0.1)]"],
+            &["solvers.soil.contacts.0.between", "`rock`", "sand"],
+        ),
+        (
+            &["solvers.soil.contacts=[(between: (\"sand\", \"sand\"), friction: 0.1)]"],
+            &["solvers.soil.contacts.0.between", "twice", "two bodies"],
+        ),
         (&["solvers.soil.courant=1.5"], &["solvers.soil", "Courant"]),
     ];
     for (edits, told) in cases {
