@@ -15,6 +15,8 @@ pub mod folder;
 mod json;
 mod lock;
 pub mod machine;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub mod material_file;
 pub mod methods;
 pub mod model;
 pub mod observers;

@@ -4,7 +4,7 @@ use crate::column::grading_of;
 use crate::problems::{Problems, nearest};
 use crate::scene::{Sample, Scene};
 use granular_constitutive::AnyLaw;
-use granular_constitutive::spec::{ConstitutiveLawSpec, ContinuumSpec, GrainsSpec};
+use granular_constitutive::spec::{ConstitutiveLawSpec, GrainsSpec};
 use granular_core::Dim;
 use granular_core::coarse::Constituents;
 
@@ -12,8 +12,13 @@ use granular_core::coarse::Constituents;
 const DRAWN: usize = 10_000;
 
 /// The law of a continuum with a density \[kg/m^3\], or what is wrong with its values, told at a path.
-pub(super) fn law(spec: &ContinuumSpec, density: f64, path: &str, problems: &mut Problems) -> Option<AnyLaw> {
-    let law = AnyLaw::from_spec(&spec.law, density);
+pub(super) fn law(
+    spec: &ConstitutiveLawSpec,
+    density: f64,
+    path: &str,
+    problems: &mut Problems,
+) -> Option<AnyLaw> {
+    let law = AnyLaw::from_spec(spec, density);
     law.map_err(|error| problems.add(path, format!("refused: {error}"), error.allowed, "")).ok()
 }
 
@@ -56,7 +61,10 @@ pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<KnownGrains> {
         Sample::Bodies(list) => (&list.first()?.material, None),
         _ => return None,
     };
-    let of_law = match &scene.continua.get(material)?.law {
+    let files = (&*scene.folder, Some(scene.dimension));
+    // What cannot be read is blamed where the law is built.
+    let law = scene.continua.get(material)?.law(files, "", &mut Problems::default())?;
+    let of_law = match law {
         ConstitutiveLawSpec::MuI { grains: GrainsSpec::Dry { diameter, density }, .. } => {
             let [density, diameter] = [density.value(), diameter.value()];
             Some(KnownGrains { constituents: Constituents { density, diameter }, mean_diameter: diameter })

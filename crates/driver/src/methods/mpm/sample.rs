@@ -145,8 +145,9 @@ fn continuum<D: Dim>(
             return None;
         }
     };
-    let law = materials::law(spec, density, &format!("{place}.law"), problems);
-    Some((law?, density))
+    let files = (&*scene.folder, Some(scene.dimension));
+    let law = spec.law(files, &format!("{place}."), problems)?;
+    Some((materials::law(&law, density, &format!("{place}.law"), problems)?, density))
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
