@@ -48,6 +48,7 @@ mod sorting;
 pub mod spec;
 mod state;
 mod step;
+mod thin;
 mod traction;
 mod turning;
 mod wall;

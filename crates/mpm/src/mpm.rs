@@ -138,6 +138,7 @@ impl<D: Dim> Mpm<D> {
         }
         self.injected += self.energy_of_group(self.groups.len() - 1).mechanical();
         self.sort().map_err(|_| SetupError::new("place", f64::NAN, "within 2^31 cells of the origin"))?;
+        self.check_thin_walls()?;
         Ok(BodyId(self.groups.len() - 1))
     }
 

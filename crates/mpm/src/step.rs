@@ -246,6 +246,7 @@ impl<D: Dim> Mpm<D> {
         self.travel += self.fastest * dt;
         if self.travel > LONGEST_TRAVEL * self.grid.lattice.cell {
             self.sort()?;
+            self.watch_thin_walls()?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::sample::falling;
 use granular_constitutive::LinearElastic;
 use granular_core::glam::DVec2;
-use granular_core::{D2, Solver, SymmetricTensor, contract_tests};
+use granular_core::{D2, Shape, Solver, SymmetricTensor, contract_tests};
 use granular_mpm::{Condition, Mpm2, Options, Particle, Setup, Wall, WallMotion};
 
 const CELL: f64 = 0.05;
@@ -134,6 +134,58 @@ fn a_pressure_compresses_a_block() {
     mpm.advance(dt, (1.0 / dt) as u64).unwrap();
     assert!(mpm.energies().elastic < 1e-3 * stored);
     assert!(mpm.set_traction(|_, _| true, DVec2::splat(f64::NAN)).is_err());
+}
+
+/// Two blocks with a wall between them, one of them running into it.
+fn parted(wall: Wall<D2>, gap: f64) -> Result<Mpm2, granular_core::SetupError> {
+    let mut mpm = Mpm2::new(Setup { walls: vec![wall], ..Setup::new(0.1) })?;
+    let law = LinearElastic::new(1e5, 0.2)?;
+    let right = Particle::filling(DVec2::new(gap, 0.0), DVec2::new(gap + 0.4, 0.4), 0.025);
+    mpm.body(law, 1000.0, &right)?;
+    let left = Particle::filling(DVec2::new(-0.4, 0.0), DVec2::new(0.0, 0.4), 0.025);
+    let left: Vec<_> = left.into_iter().map(|particle| particle.moving(DVec2::new(1.0, 0.0))).collect();
+    mpm.body(law, 1000.0, &left)?;
+    Ok(mpm)
+}
+
+#[test]
+fn what_is_behind_a_wall_feels_nothing_of_what_is_before_it() {
+    let (low, high) = (DVec2::new(0.0, -1.0), DVec2::new(0.2, 1.0));
+    let thick = Wall::block("wall", low, high, Condition::frictional(0.3)).unwrap();
+    let mut mpm = parted(thick, 0.2).unwrap();
+    let dt = mpm.recommended_step();
+    mpm.advance(dt, (0.1 / dt) as u64).unwrap();
+    let mut speeds = [0.0_f64; 2];
+    for (id, particle) in mpm.particles() {
+        let speed = &mut speeds[usize::from(id >= 256)];
+        *speed = speed.max(particle.velocity.length());
+    }
+    assert!(speeds[0] == 0.0 && speeds[1] > 0.1, "{speeds:?}");
+}
+
+#[test]
+fn material_on_both_sides_of_a_thin_wall_is_refused() {
+    let (from, to) = (DVec2::new(0.0, -1.0), DVec2::new(0.0, 1.0));
+    let segment = Wall::new("gate", Shape::Segment { from, to }, Condition::Slip);
+    let plate = Wall::block("gate", from, to + DVec2::new(0.05, 0.0), Condition::Slip).unwrap();
+    for wall in [segment.clone(), plate] {
+        let error = parted(wall.clone(), 0.05).err().unwrap().to_string();
+        assert!(error.contains("`gate`") && error.contains("two cells thick"), "{error}");
+        assert!(parted(Wall { open: true, ..wall }, 0.05).is_ok());
+    }
+    // One comes flying while the other is there.
+    let mut mpm = Mpm2::new(Setup { walls: vec![segment], ..Setup::new(0.1) }).unwrap();
+    let law = LinearElastic::new(1e5, 0.2).unwrap();
+    let block = |at: f64, speed: f64| -> Vec<_> {
+        let low = DVec2::new(at, 0.0);
+        let block = Particle::filling(low, low + 0.4, 0.025);
+        block.into_iter().map(|particle| particle.moving(DVec2::new(speed, 0.0))).collect()
+    };
+    mpm.body(law, 1000.0, &block(0.0, 0.0)).unwrap();
+    mpm.body(law, 1000.0, &block(-0.8, 1.0)).unwrap();
+    let dt = mpm.recommended_step();
+    let error = mpm.advance(dt, (1.0 / dt) as u64).unwrap_err().to_string();
+    assert!(error.contains("`gate`") && error.contains("two cells thick"), "{error}");
 }
 
 contract_tests!(
