@@ -137,7 +137,7 @@ impl MaterialFile {
 
 /// A number for tests.
 #[cfg(test)]
-pub(crate) fn exact(value: f64) -> Estimate {
+fn exact(value: f64) -> Estimate {
     Estimate { value, error: 0.01 }
 }
 

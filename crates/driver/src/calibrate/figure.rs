@@ -104,7 +104,6 @@ fn series(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material_file::exact;
     use crate::material_file::example as material;
 
     #[test]

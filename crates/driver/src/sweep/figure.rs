@@ -61,11 +61,16 @@ pub fn plot(folders: &[PathBuf], view: &View) -> Result<PathBuf, Failure> {
         let sweep = Collected::read(folder)?;
         let name = folder.file_name().filter(|_| folders.len() > 1).unwrap_or_default();
         let of_solvers = sweep.solvers_with(y);
-        for solver in &of_solvers {
+        for (k, solver) in of_solvers.iter().enumerate() {
+            // Runs count once, however many curves they have.
+            let before = (counts.runs, counts.left_out);
             let name = name.to_string_lossy();
             let parts = [&*name, solver.trim_end_matches('.')];
             let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
             sweep.add_curves(&label, [solver, y], view, &mut curves, &mut counts)?;
+            if k > 0 {
+                (counts.runs, counts.left_out) = before;
+            }
         }
         // One solver's number has its unit; `continuum.` is told by the label of the curve.
         let solver = of_solvers.first().copied().unwrap_or_default();
