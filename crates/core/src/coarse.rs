@@ -41,7 +41,8 @@
 //! reach of a kernel counts as spread about the mean here as everywhere.
 //!
 //! **A continuum** of particles that carry stresses themselves (material points, smoothed particles) is seen in the same
-//! way: [`CoarseSource::stress`] takes the place of contacts.
+//! way: [`CoarseSource::stress`] takes the place of contacts. Its solid fraction and its inertial number need the grains that it
+//! stands for ([`Constituents`]).
 //!
 //! ```
 //! use granular_core::coarse::{CoarseFields, CoarseGrid, CoarseSource, Sizes};
@@ -53,7 +54,8 @@
 //!     mass: &[8e-3],
 //!     size: Sizes::Radii(&[1e-3]),
 //!     periods: None,
-//!     stress: &[],
+//!     stress: vec![].into(),
+//!     constituents: None,
 //!     visit_branches: &|_| {},
 //!     longest_branch: 0.0,
 //! };
@@ -76,4 +78,4 @@ mod tests;
 
 pub use fields::CoarseFields;
 pub use grid::CoarseGrid;
-pub use source::{CoarseSource, ForceBranch, Periods, Sizes, VisitBranches};
+pub use source::{CoarseSource, Constituents, ForceBranch, Periods, Sizes, VisitBranches};

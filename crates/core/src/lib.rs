@@ -29,6 +29,7 @@ pub mod field;
 pub mod grid;
 pub mod matrix;
 pub mod observer;
+pub mod push;
 pub mod quantity;
 pub mod random;
 pub mod search;

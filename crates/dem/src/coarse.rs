@@ -53,7 +53,8 @@ impl<D: Dim> Dem<D> {
                 is_periodic: std::array::from_fn(|axis| axis < D::N && cell.is_periodic(axis)),
                 gradient: *cell.gradient(),
             }),
-            stress: &[],
+            stress: Cow::Borrowed(&[]),
+            constituents: None,
             visit_branches,
             longest_branch: 2.0 * grains.radius_range().1,
         }

@@ -226,6 +226,11 @@ impl<D: Dim> Dem<D> {
         }
     }
 
+    /// Masses of all grains \[kg; kg/m in the plane\], in the order of storage.
+    pub fn masses(&self) -> &[f64] {
+        &self.grains.mass
+    }
+
     /// Walls, open gates included.
     pub fn walls(&self) -> &[Wall<D>] {
         &self.walls

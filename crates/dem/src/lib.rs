@@ -68,6 +68,7 @@ pub use contact::{Contact, Partner};
 pub use dem::{Dem, OtherBody};
 pub use grains::Grain;
 pub use granular_core::coarse::{CoarseFields, CoarseGrid};
+pub use granular_core::push::{Push, PushProfile, Strength};
 pub use granular_core::shape::{Facets, Shape};
 pub use granular_core::walls::{PressureBetween, Servo, WallMotion};
 pub use inlets::{Exchanged, Inlet, Outlet, STEPS_PER_LOOK};
@@ -82,7 +83,7 @@ pub use material::{
     Tension,
 };
 pub use periodic::{CellControl, Control, Matrix, PeriodicCell};
-pub use push::{Push, PushProfile, Pushed, Strength};
+pub use push::Pushed;
 pub use setup::{ContactModel, LeverArm, Options, Setup, SpringTurning};
 pub use shaking::Shaking;
 pub use show::Energies;

@@ -13,12 +13,11 @@
 
 mod figure;
 mod fit;
-mod material;
 pub(crate) mod plan;
 mod table;
 
+pub use crate::material_file::{Estimate, Jop, Linear, MaterialFile, Point};
 pub use figure::{figure, plot};
-pub use material::{Estimate, Jop, Linear, MaterialFile, Point};
 pub use plan::Plan;
 pub use table::table;
 

@@ -33,4 +33,9 @@ impl ColumnSize {
     pub fn front(&self) -> &'static str {
         if self.round.is_some() { "radial_front" } else { "front" }
     }
+
+    /// The number that says how far 99 % of its mass did.
+    pub fn front_99(&self) -> &'static str {
+        if self.round.is_some() { "radial_front_99" } else { "front_99" }
+    }
 }

@@ -276,7 +276,9 @@ fn of_member(
     let column = member.column().filter(|_| spreads(scene));
     if let (Some(column), Some(release)) = (column, release_of(scene, &records)) {
         add("aspect_ratio", "1", Some(release.height / column.width));
-        add("runout", "1", number(column.front()).map(|front| (front - column.width) / column.width));
+        let spread = |front: &str| number(front).map(|front| (front - column.width) / column.width);
+        add("runout", "1", spread(column.front()));
+        add("runout_99", "1", spread(column.front_99()));
         add("final_height_over_width", "1", number("height").map(|height| height / column.width));
         add("duration_unit", "s", gravity_time(scene, release.height));
     }

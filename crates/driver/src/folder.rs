@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::lock::Lock;
 use crate::methods::specs;
-use crate::scene::files::{MESHES, SAMPLE};
+use crate::scene::files::{CONTINUA, MESHES, SAMPLE};
 use granular_io::{SnapshotStore, write_atomically};
 use serde_json::{Value, json};
 use std::fs;
@@ -22,7 +22,7 @@ const SNAPSHOTS: &str = "snapshots";
 /// Whoever writes to the folder holds the lock of this empty file.
 const LOCK: &str = "lock";
 /// Names in a run folder that no output may take.
-pub(crate) const RESERVED: [&str; 6] = [RUN_FILE, SCENE_FILE, SNAPSHOTS, LOCK, SAMPLE, MESHES];
+pub(crate) const RESERVED: [&str; 7] = [RUN_FILE, SCENE_FILE, SNAPSHOTS, LOCK, SAMPLE, MESHES, CONTINUA];
 
 /// A folder that holds the resolved scene, `run.json`, tables, fields, figures and snapshots.
 #[derive(Clone, Debug)]
@@ -206,7 +206,7 @@ fn refuse_occupied(path: &Path, force: bool) -> Result<(), Failure> {
 /// Whether a folder is empty, or holds at most what a run leaves that was killed before its scene was written.
 fn is_unborn(path: &Path) -> bool {
     let Ok(entries) = fs::read_dir(path) else { return !path.exists() };
-    let begun = [RUN_FILE, SAMPLE, MESHES];
+    let begun = [RUN_FILE, SAMPLE, MESHES, CONTINUA];
     let mut marked = false;
     let only_litter = entries.flatten().all(|entry| {
         let name = entry.file_name();

@@ -15,6 +15,8 @@ pub mod folder;
 mod json;
 mod lock;
 pub mod machine;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub mod material_file;
 pub mod methods;
 pub mod model;
 pub mod observers;
@@ -42,8 +44,10 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("cavity", include_str!("../templates/cavity.ron")),
     ("channel-flow", include_str!("../templates/channel-flow.ron")),
     ("column-collapse", include_str!("../templates/column-collapse.ron")),
+    ("continuum-column", include_str!("../templates/continuum-column.ron")),
     ("cylinder", include_str!("../templates/cylinder.ron")),
     ("disk-on-incline", include_str!("../templates/disk-on-incline.ron")),
     ("sample", include_str!("../templates/sample.ron")),
     ("slope-impact", include_str!("../templates/slope-impact.ron")),
+    ("two-scales", include_str!("../templates/two-scales.ron")),
 ];

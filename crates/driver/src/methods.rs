@@ -8,6 +8,10 @@ pub(crate) mod contract;
 pub(crate) mod couplings;
 #[cfg(feature = "dem")]
 pub(crate) mod dem;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod fronts;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod grids;
 #[cfg(test)]
 mod heat;
 #[cfg(feature = "lbm")]
@@ -16,6 +20,8 @@ pub(crate) mod member;
 #[cfg(feature = "mpm")]
 pub(crate) mod mpm;
 pub(crate) mod parts;
+#[cfg(any(feature = "dem", feature = "mpm"))]
+pub(crate) mod push;
 pub(crate) mod specs;
 mod table;
 pub(crate) mod unused;

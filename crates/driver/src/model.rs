@@ -76,6 +76,8 @@ impl Model {
 pub fn build(scene: &Scene) -> Result<Model, Vec<SceneProblem>> {
     let mut problems = Problems::default();
     check_frame(scene, &mut problems);
+    #[cfg(any(feature = "dem", feature = "mpm"))]
+    crate::methods::push::check_figures(scene, &mut problems);
     outputs::check_files(scene, &mut problems);
     if scene.solvers.is_empty() {
         let allowed =

@@ -46,6 +46,8 @@ pub(crate) struct Pass<'a, D: Dim> {
     pub(crate) width: &'a [f64],
     /// Density at the start.
     pub(crate) density: f64,
+    /// The set of nodal motions that is its own.
+    pub(crate) field: usize,
     pub(crate) tiles: &'a mut [Node],
     pub(crate) watches: &'a mut [Watch],
 }
@@ -98,7 +100,7 @@ impl<D: Dim, A: Axes + Debug, L: ConstitutiveLaw> Body<D> for LawBody<A, L> {
     }
 
     fn pass(&mut self, pass: Pass<'_, D>) {
-        let Pass { plan, kernels, grid, starts, parts, mass, width, density, tiles, watches } = pass;
+        let Pass { plan, kernels, grid, starts, parts, mass, width, density, field, tiles, watches } = pass;
         let (law, origin) = (&self.law, starts[0]);
         let memory = Cut::new(starts, &mut self.memory);
         let work = (tiles, parts, memory, PerBlock(watches));
@@ -119,7 +121,7 @@ impl<D: Dim, A: Axes + Debug, L: ConstitutiveLaw> Body<D> for LawBody<A, L> {
                 batch: Batch::new(),
                 strains: Strains::new(),
             };
-            grid.fetch(home, tile);
+            grid.fetch(home, field, tile);
             watch.0[0] = block.run::<A, L>(law, tile, &mut parts, memory.items);
         });
     }

@@ -29,6 +29,8 @@ pub(crate) struct Grid<D: Dim> {
     pub(crate) motion: Vec<Node>,
     /// Changes whenever other nodes are there.
     pub(crate) version: u64,
+    /// Sets of sums and motions on each node: one, and more where bodies are in contact.
+    pub(crate) fields: usize,
 }
 
 impl<D: Dim> Grid<D> {
@@ -43,6 +45,7 @@ impl<D: Dim> Grid<D> {
             sums: Vec::new(),
             motion: Vec::new(),
             version: 0,
+            fields: 1,
         }
     }
 
@@ -68,9 +71,27 @@ impl<D: Dim> Grid<D> {
         Blocks::new(self.tile_nodes(), self.tile_shape.nodes)
     }
 
-    /// Cuts nodes block by block.
+    /// Cuts what is on nodes block by block; those of a block hold one field after another.
     pub(crate) fn node_blocks(&self) -> Blocks {
-        Blocks::new(self.blocks.len() * block_cells::<D>(), block_cells::<D>())
+        let each = self.fields * block_cells::<D>();
+        Blocks::new(self.blocks.len() * each, each)
+    }
+
+    /// Has as many fields on every node.
+    pub(crate) fn set_fields(&mut self, fields: usize) {
+        self.fields = fields;
+        self.version += 1;
+        self.make_room();
+    }
+
+    /// Makes room for what is on nodes.
+    fn make_room(&mut self) {
+        let nodes = self.blocks.len() * self.fields * block_cells::<D>();
+        for on_nodes in [&mut self.sums, &mut self.motion] {
+            on_nodes.clear();
+            grow(on_nodes, nodes);
+            on_nodes.resize(nodes, Node::ZERO);
+        }
     }
 
     /// Where a home lies.
@@ -106,12 +127,7 @@ impl<D: Dim> Grid<D> {
             let blocks = &*blocks;
             (0..count).map(move |k| number(blocks, shifted::<D>(home, k, 1)))
         }));
-        let nodes = self.blocks.len() * block_cells::<D>();
-        for on_nodes in [&mut self.sums, &mut self.motion] {
-            on_nodes.clear();
-            grow(on_nodes, nodes);
-            on_nodes.resize(nodes, Node::ZERO);
-        }
+        self.make_room();
     }
 
     /// Sums what tiles hold on the nodes of a block.
@@ -130,11 +146,12 @@ impl<D: Dim> Grid<D> {
         }
     }
 
-    /// Brings the motion of all nodes that particles of a home reach into its tile.
-    pub(crate) fn fetch(&self, home: usize, tile: &mut [Node]) {
+    /// Brings the motion of all nodes that particles of a home and a field reach into its tile.
+    pub(crate) fn fetch(&self, home: usize, field: usize, tile: &mut [Node]) {
         let (count, nodes) = (neighbours::<D>(), block_cells::<D>());
         for (k, &block) in self.around[home * count..(home + 1) * count].iter().enumerate() {
-            let owned = &self.motion[block as usize * nodes..(block as usize + 1) * nodes];
+            let first = (block as usize * self.fields + field) * nodes;
+            let owned = &self.motion[first..first + nodes];
             for run in self.tile_shape.shared_with(k) {
                 tile[run.tile..run.tile + run.len].copy_from_slice(&owned[run.owned..run.owned + run.len]);
             }
@@ -185,7 +202,7 @@ mod tests {
             let at = lattice.node(grid.blocks[k / 64], k % 64);
             node.0[..2].copy_from_slice(&at.to_array());
         }
-        grid.fetch(1, &mut tiles[..169]);
+        grid.fetch(1, 0, &mut tiles[..169]);
         let corner = grid.corner(1).at - DVec2::splat(2.0);
         for (k, node) in tiles[..169].iter().enumerate() {
             let expected = corner + DVec2::new((k % 13) as f64, (k / 13) as f64);

@@ -102,6 +102,11 @@ impl<D: Dim> Lattice<D> {
         corner
     }
 
+    /// The first node of a block, in cells from the origin.
+    pub(crate) fn in_cells(&self, block: BlockAt) -> D::Vec {
+        D::Vec::from_fn(|axis| f64::from(block[axis]) * block_side::<D>() as f64)
+    }
+
     /// A node of a block.
     pub(crate) fn node(&self, block: BlockAt, local: usize) -> D::Vec {
         let side = block_side::<D>();

@@ -41,6 +41,12 @@ pub struct Losses {
     pub damping: f64,
     /// To the share of PIC in the velocity update.
     pub pic: f64,
+    /// To friction of bodies in contact.
+    pub contact_friction: f64,
+    /// To stopping of bodies in contact that approach.
+    pub contact_stopping: f64,
+    /// To walls that absorb waves.
+    pub absorbed: f64,
 }
 
 impl Losses {
@@ -49,13 +55,44 @@ impl Losses {
         self.to_array().iter().sum()
     }
 
-    pub(crate) fn to_array(self) -> [f64; 6] {
-        let Self { plastic, viscous, friction, stopping, damping, pic } = self;
-        [plastic, viscous, friction, stopping, damping, pic]
+    pub(crate) fn to_array(self) -> [f64; 9] {
+        let Self {
+            plastic,
+            viscous,
+            friction,
+            stopping,
+            damping,
+            pic,
+            contact_friction,
+            contact_stopping,
+            absorbed,
+        } = self;
+        [plastic, viscous, friction, stopping, damping, pic, contact_friction, contact_stopping, absorbed]
     }
 
-    pub(crate) fn from_array([plastic, viscous, friction, stopping, damping, pic]: [f64; 6]) -> Self {
-        Self { plastic, viscous, friction, stopping, damping, pic }
+    pub(crate) fn from_array(losses: [f64; 9]) -> Self {
+        let [
+            plastic,
+            viscous,
+            friction,
+            stopping,
+            damping,
+            pic,
+            contact_friction,
+            contact_stopping,
+            absorbed,
+        ] = losses;
+        Self {
+            plastic,
+            viscous,
+            friction,
+            stopping,
+            damping,
+            pic,
+            contact_friction,
+            contact_stopping,
+            absorbed,
+        }
     }
 }
 
@@ -94,8 +131,13 @@ impl<D: Dim> Mpm<D> {
     /// What the energy ledger misses \[J\]: energy put in and work of moving walls, less the present energy and all losses.
     /// `None` unless the ledger is kept.
     pub fn energy_residual(&self) -> Option<f64> {
-        let put_in = self.injected + self.moving.work;
+        let put_in = self.injected + self.moving.work + self.level_of_loads();
         self.options.ledger.then(|| put_in - self.energies().mechanical() - self.losses.total())
+    }
+
+    /// Work of moving walls on what touches them since the start \[J\]; zero unless the ledger is kept.
+    pub fn work_of_walls(&self) -> f64 {
+        self.moving.work
     }
 
     /// Sum of momenta \[kg m/s\].

@@ -95,6 +95,7 @@ impl<D: Dim> Mpm<D> {
         let memory = self.groups.iter().map(|group| group.body.bytes_each()).max().unwrap_or(0);
         let each = self.particles.bytes_each() + memory + crate::sorting::Sorting::<D>::bytes_each();
         let nodes = self.grid.bytes() + size_of_val(&self.tiles[..]) + size_of_val(&self.touches.list[..]);
+        let nodes = nodes + self.contacts.bytes();
         let mut left_out = Vec::new();
         let mut leave_out = |is_out: bool, what: &str| {
             if is_out {
@@ -106,6 +107,8 @@ impl<D: Dim> Mpm<D> {
         leave_out(D::N == 2, "stresses xz and yz: plane strain");
         leave_out(!self.options.ledger, "losses of energy: no ledger");
         leave_out(self.moving.is_empty(), "poses of walls: none moves");
+        leave_out(self.particles.load.is_empty(), "forces on particles: no traction");
+        leave_out(self.contacts.is_empty(), "velocities of each body on nodes: none are in contact");
         let nodes_each = nodes / self.len().max(1);
         Memory { bytes: each * self.len() + nodes, bytes_per_item: each + nodes_each, left_out }
     }

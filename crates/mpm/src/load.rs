@@ -16,6 +16,8 @@ pub(crate) struct Givers<'a, D: Dim> {
     pub(crate) stress: [&'a [f64]; 6],
     /// Empty unless shape functions have a width.
     pub(crate) width: &'a [f64],
+    /// Forces from outside; empty unless there are any.
+    pub(crate) load: &'a [D::Vec],
 }
 
 impl<D: Dim> Givers<'_, D> {
@@ -29,12 +31,13 @@ impl<D: Dim> Givers<'_, D> {
             volume: &self.volume[from..to],
             stress: self.stress.map(|component| component.get(from..to).unwrap_or(&[])),
             width: self.width.get(from..to).unwrap_or(&[]),
+            load: self.load.get(from..to).unwrap_or(&[]),
         }
     }
 }
 
 /// Lays out what particles give: mass and momentum in proportion to the values of shape functions, and with a number of cells per
-/// metre the force `-V s` in proportion to their derivatives by places in cells.
+/// metre forces from outside likewise, and the force `-V s` in proportion to their derivatives by places in cells.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>, force: Option<f64>) {
     let count = givers.mass.len().min(BATCH);
@@ -54,6 +57,11 @@ pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>
         }
         return;
     };
+    for (row, &load) in rows[0].iter_mut().zip(givers.load) {
+        for axis in 0..D::N {
+            row.0[1 + D::N + axis] = load.component(axis);
+        }
+    }
     let [xx, yy, zz, xy, yz, xz] = givers.stress;
     let (xx, yy, xy) = (&xx[..count], &yy[..count], &xy[..count]);
     if D::N == 2 {
@@ -70,5 +78,29 @@ pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>
         rows[1][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xx[k], scale * xy[k], scale * xz[k], 0.0]);
         rows[2][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xy[k], scale * yy[k], scale * yz[k], 0.0]);
         rows[3][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xz[k], scale * yz[k], scale * zz[k], 0.0]);
+    }
+}
+
+/// Lays out where a body ends near nodes: the gradient of its volume, in proportion to the derivatives of shape functions, which points out of
+/// the body and is as long as its surface near a node is large; then, in proportion to their values, the moment of its volume, in cells from
+/// the origin of the lattice, and its volume.
+pub(crate) fn load_outline<D: Dim>(
+    rows: &mut [[Node; BATCH]; 4],
+    givers: &Givers<'_, D>,
+    (origin, per_cell): (D::Vec, f64),
+) {
+    let (position, volume) = (givers.position, givers.volume);
+    for ((node, &position), &volume) in rows[0].iter_mut().zip(position).zip(volume) {
+        *node = Node::ZERO;
+        for axis in 0..D::N {
+            node.0[D::N + axis] = (position - origin).component(axis) * (per_cell * volume);
+        }
+        node.0[2 * D::N] = volume;
+    }
+    for (axis, row) in rows[1..].iter_mut().enumerate() {
+        for (node, volume) in row.iter_mut().zip(volume) {
+            *node = Node::ZERO;
+            node.0[axis] = volume * per_cell;
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The solver.
 
 use crate::choice::{BodyLaw, Kernels, kernels};
+use crate::contact::Contacts;
 use crate::grid::Grid;
 use crate::layout::{Lattice, Node, TileShape};
 use crate::ledger::Losses;
@@ -39,6 +40,7 @@ pub struct Mpm<D: Dim> {
     pub(crate) particles: Particles<D>,
     pub(crate) groups: Vec<Group<D>>,
     pub(crate) sorting: Sorting<D>,
+    pub(crate) contacts: Contacts<D>,
     /// Mass of the heaviest particle.
     pub(crate) heaviest: f64,
     pub(crate) watches: Vec<Watch>,
@@ -82,6 +84,7 @@ impl<D: Dim> Mpm<D> {
             particles: Particles::default(),
             groups: Vec::new(),
             sorting: Sorting::default(),
+            contacts: Contacts::default(),
             heaviest: 0.0,
             watches: Vec::new(),
             damped: Vec::new(),
@@ -129,9 +132,13 @@ impl<D: Dim> Mpm<D> {
             self.fastest = self.fastest.max(particle.velocity.length());
         }
         let starts = vec![first, self.particles.len() as u32];
-        self.groups.push(Group { body, density, starts, looseness: 1.0 });
+        self.groups.push(Group { body, density, starts, looseness: 1.0, field: 0 });
+        if !self.contacts.is_empty() {
+            self.lay_out_fields();
+        }
         self.injected += self.energy_of_group(self.groups.len() - 1).mechanical();
         self.sort().map_err(|_| SetupError::new("place", f64::NAN, "within 2^31 cells of the origin"))?;
+        self.check_thin_walls()?;
         Ok(BodyId(self.groups.len() - 1))
     }
 
@@ -206,6 +213,11 @@ impl<D: Dim> Mpm<D> {
         (0..self.len()).map(|index| (self.particles.id[index], self.particles.get(index)))
     }
 
+    /// Masses of all particles \[kg\], in the order of memory.
+    pub fn masses(&self) -> &[f64] {
+        &self.particles.mass
+    }
+
     /// The particle of a stable identifier. Searches: for a few particles.
     ///
     /// # Panics
@@ -271,17 +283,6 @@ impl<D: Dim> Mpm<D> {
     /// Takes steps that are too long instead of refusing them: for studies of stability.
     pub fn allow_any_step(&mut self) {
         self.any_step = true;
-    }
-
-    /// Adds a velocity \[m/s\] to each particle of a body, by where it is.
-    pub fn add_velocities(&mut self, body: BodyId, velocity: impl Fn(D::Vec) -> D::Vec) {
-        self.injected -= self.energies().translational();
-        let starts = &self.groups[body.0].starts;
-        for k in starts[0] as usize..starts[starts.len() - 1] as usize {
-            self.particles.velocity[k] += velocity(self.particles.position[k]);
-            self.fastest = self.fastest.max(self.particles.velocity[k].length());
-        }
-        self.injected += self.energies().translational();
     }
 }
 

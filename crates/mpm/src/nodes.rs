@@ -23,10 +23,11 @@ pub(crate) struct Touch<D: Dim> {
     both_sides: bool,
     /// Velocity of the wall there.
     pub(crate) velocity: D::Vec,
-    /// Momentum that the wall gave to the node in the last step \[N s\]: by friction, and by keeping it out.
-    impulses: [D::Vec; 2],
+    /// Momentum that the wall gave to the node in the last step \[N s\]: by friction, by keeping it out, and by
+    /// absorbing waves.
+    impulses: [D::Vec; 3],
     /// Energy lost there in the last step \[J\], by the same.
-    pub(crate) lost: [f64; 2],
+    pub(crate) lost: [f64; 3],
     /// How much the wall had to slow the node down to keep it out, so far in this step.
     press: f64,
     /// Whether the wall keeps the node out in this step.
@@ -38,7 +39,7 @@ pub(crate) struct Touch<D: Dim> {
 /// All nodes that walls act on, block by block.
 #[derive(Clone, Debug)]
 pub(crate) struct Touches<D: Dim> {
-    /// Where those of each block begin, and the end of the last.
+    /// Where those of each block begin, and the end of the last; a block has them once for every field.
     pub(crate) starts: Vec<u32>,
     pub(crate) list: Vec<Touch<D>>,
     /// Version of the grid for which they were found; none when they must be found anew.
@@ -65,7 +66,8 @@ impl<D: Dim> Touches<D> {
         self.list.clear();
         let rests = Pose::default();
         for &block in grid.blocks() {
-            self.starts.push(self.list.len() as u32);
+            let first = self.list.len();
+            self.starts.push(first as u32);
             for node in 0..block_cells::<D>() {
                 let at = grid.lattice.node(block, node);
                 for (wall, description) in walls.iter().enumerate().filter(|(_, wall)| !wall.open) {
@@ -78,14 +80,16 @@ impl<D: Dim> Touches<D> {
                         normal: pose.out_of_wall(normal),
                         both_sides,
                         velocity: pose.velocities(at).0,
-                        impulses: [D::Vec::ZERO; 2],
-                        lost: [0.0; 2],
+                        impulses: [D::Vec::ZERO; 3],
+                        lost: [0.0; 3],
                         press: 0.0,
                         is_pressed: false,
                         sticks: false,
                     });
                 }
             }
+            let of_one_field = first..self.list.len();
+            (1..grid.fields).for_each(|_| self.list.extend_from_within(of_one_field.clone()));
         }
         self.starts.push(self.list.len() as u32);
     }
@@ -122,7 +126,7 @@ fn normal_on<D: Dim>(shape: &Shape<D>, at: D::Vec, cell: f64) -> D::Vec {
 impl<D: Dim> Touch<D> {
     /// Nothing has happened yet in this step.
     pub(crate) fn rest(&mut self) {
-        (self.press, self.impulses, self.lost) = (0.0, [D::Vec::ZERO; 2], [0.0; 2]);
+        (self.press, self.impulses, self.lost) = (0.0, [D::Vec::ZERO; 3], [0.0; 3]);
         (self.is_pressed, self.sticks) = (false, false);
     }
 
@@ -145,6 +149,7 @@ impl<D: Dim> Touch<D> {
     fn keep_out(&self, condition: Condition, velocity: D::Vec) -> D::Vec {
         match condition {
             Condition::Fixed => self.velocity,
+            Condition::Absorbing { .. } => velocity,
             _ if self.lets_go(condition) && self.outward(velocity) >= 0.0 => velocity,
             _ => self.along(velocity),
         }
@@ -159,6 +164,7 @@ impl<D: Dim> Touch<D> {
     fn hold(&self, condition: Condition, velocity: D::Vec) -> D::Vec {
         match condition {
             Condition::Fixed => self.velocity,
+            Condition::Absorbing { .. } => velocity,
             _ if self.sticks => self.velocity,
             _ if self.is_pressed => self.along(velocity),
             _ => self.keep_out(condition, velocity),
@@ -190,7 +196,7 @@ impl<D: Dim> Touch<D> {
 
     /// Momentum that the wall gave to the node in the last step \[N s\].
     pub(crate) fn impulse(&self) -> D::Vec {
-        self.impulses[0] + self.impulses[1]
+        self.impulses[0] + self.impulses[1] + self.impulses[2]
     }
 
     /// Books the work of a step in which the node went from one velocity to another: that of each push on the mean of both. What
@@ -198,6 +204,8 @@ impl<D: Dim> Touch<D> {
     fn book(&mut self, before: D::Vec, after: D::Vec) {
         let mean = (before + after) * 0.5 - self.velocity;
         self.lost = self.impulses.map(|impulse| -impulse.dot(mean));
+        // A node behind the wall with next to no mass flies off in the step, but particles feel no more than its momentum.
+        self.lost[2] = -self.impulses[2].dot(before - self.velocity);
     }
 }
 
@@ -206,6 +214,8 @@ pub(crate) struct Meeting<'a, D: Dim> {
     pub(crate) touches: &'a mut [Touch<D>],
     pub(crate) walls: &'a [Wall<D>],
     pub(crate) mass: f64,
+    /// Step over the edge of a cell \[s/m\].
+    pub(crate) dt_per_cell: f64,
 }
 
 impl<D: Dim> Meeting<'_, D> {
@@ -233,7 +243,8 @@ impl<D: Dim> Meeting<'_, D> {
             touch.note(condition, now + change);
             touch.hold(condition, now)
         });
-        let stopped = self.stop(before + change);
+        let absorbed = self.absorb(before, before + change);
+        let stopped = self.stop(absorbed);
         let rubbed = self.rub(stopped);
         // Friction of one wall may push into another.
         let after = if self.touches.len() > 1 { self.stop(rubbed) } else { rubbed };
@@ -267,6 +278,29 @@ impl<D: Dim> Meeting<'_, D> {
             touch.impulses[1] += (after - before) * mass;
             after
         })
+    }
+
+    /// Dashpots `rho c` on the surface that a node on a wall stands for, `2 m / (rho h)`, which act on its mean velocity over the step.
+    fn absorb(&mut self, before: D::Vec, after: D::Vec) -> D::Vec {
+        let mut now = after;
+        for touch in &mut *self.touches {
+            let Condition::Absorbing { compression_speed, shear_speed } = Self::condition(self.walls, touch)
+            else {
+                continue;
+            };
+            let [early, late] = [before, now].map(|velocity| velocity - touch.velocity);
+            let damped = |early: D::Vec, late: D::Vec, speed: f64| {
+                let half = speed * self.dt_per_cell;
+                (late - early * half) * (1.0 / (1.0 + half))
+            };
+            let normal = |velocity: D::Vec| touch.normal * velocity.dot(touch.normal);
+            let slowed = damped(normal(early), normal(late), compression_speed)
+                + damped(early - normal(early), late - normal(late), shear_speed)
+                + touch.velocity;
+            touch.impulses[2] += (slowed - now) * self.mass;
+            now = slowed;
+        }
+        now
     }
 
     fn rub(&mut self, velocity: D::Vec) -> D::Vec {

@@ -27,6 +27,8 @@ pub(crate) struct Particles<D: Dim> {
     pub(crate) stress: [Vec<f64>; 6],
     /// Width of the particle, in cells; empty unless the shape functions have a width.
     pub(crate) width: Vec<f64>,
+    /// Forces from outside \[N\]; empty unless there are any.
+    pub(crate) load: Vec<D::Vec>,
     /// Stable identifiers.
     pub(crate) id: Vec<u32>,
 }
@@ -56,6 +58,9 @@ impl<D: Dim> Particles<D> {
             kept.push(value);
         }
         self.width.extend(width);
+        if !self.load.is_empty() {
+            self.load.push(D::Vec::ZERO);
+        }
         self.id.push(self.id.len() as u32);
     }
 
@@ -77,6 +82,7 @@ impl<D: Dim> Particles<D> {
             volume: &self.volume,
             stress: self.stress.each_ref().map(|component| &component[..]),
             width: &self.width,
+            load: &self.load,
         }
     }
 
@@ -103,6 +109,9 @@ impl<D: Dim> Particles<D> {
         }
         if !self.width.is_empty() {
             permute(&mut self.width, range.clone(), order, &mut spare.numbers);
+        }
+        if !self.load.is_empty() {
+            permute(&mut self.load, range.clone(), order, &mut spare.vectors);
         }
         permute(&mut self.id, range, order, &mut spare.ids);
     }
@@ -135,6 +144,10 @@ impl<D: Dim> Particles<D> {
         if !self.width.is_empty() {
             to.put("width", &self.width);
         }
+        to.put_one("is loaded", u8::from(!self.load.is_empty()));
+        if !self.load.is_empty() {
+            to.put("load", &self.load);
+        }
         to.put("id", &self.id);
     }
 
@@ -159,6 +172,7 @@ impl<D: Dim> Particles<D> {
         if !self.width.is_empty() {
             self.width = numbers("width", positive)?;
         }
+        self.load = if from.one::<u8>("is loaded")? == 0 { Vec::new() } else { vectors("load")? };
         self.id = from.array_of("id", count)?;
         let mut seen = vec![false; count];
         let fits = self
@@ -171,7 +185,8 @@ impl<D: Dim> Particles<D> {
     /// Bytes of one particle.
     pub(crate) fn bytes_each(&self) -> usize {
         let width = if self.width.is_empty() { 0 } else { 8 };
-        2 * size_of::<D::Vec>() + 8 * (2 + stress_components::<D>()) + width + 4
+        let load = if self.load.is_empty() { 0 } else { size_of::<D::Vec>() };
+        load + 2 * size_of::<D::Vec>() + 8 * (2 + stress_components::<D>()) + width + 4
     }
 }
 

@@ -3,12 +3,11 @@
 use crate::batch::{BATCH, Batch};
 use crate::layout::{Node, block_cells};
 use crate::mpm::Mpm;
-use granular_core::{Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
-use std::borrow::Cow;
+use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
 
 type Entry = (&'static str, &'static str, &'static str);
 
-const NUMBERS: [Entry; 20] = [
+const NUMBERS: [Entry; 23] = [
     (
         "front",
         "m",
@@ -26,6 +25,9 @@ const NUMBERS: [Entry; 20] = [
     ("loss_viscous", "J", "energy lost to viscosity of the material"),
     ("loss_sliding_at_walls", "J", "energy lost to friction at walls"),
     ("loss_stopping_at_walls", "J", "energy lost where walls stop what moves into them"),
+    ("loss_sliding_at_contacts", "J", "energy lost to friction between bodies in contact"),
+    ("loss_stopping_at_contacts", "J", "energy lost where bodies in contact approach"),
+    ("loss_absorbed", "J", "energy lost to walls that absorb waves"),
     ("loss_local_damping", "J", "energy lost to local damping"),
     ("loss_pic", "J", "energy lost to PIC in the velocity update"),
     ("energy_residual", "J", "energy that the ledger misses"),
@@ -150,6 +152,9 @@ impl<D: Dim> Mpm<D> {
             "loss_viscous" => self.losses.viscous,
             "loss_sliding_at_walls" => self.losses.friction,
             "loss_stopping_at_walls" => self.losses.stopping,
+            "loss_sliding_at_contacts" => self.losses.contact_friction,
+            "loss_stopping_at_contacts" => self.losses.contact_stopping,
+            "loss_absorbed" => self.losses.absorbed,
             "loss_local_damping" => self.losses.damping,
             "loss_pic" => self.losses.pic,
             "energy_residual" => self.energy_residual().unwrap_or(f64::NAN),
@@ -246,11 +251,11 @@ impl<D: Dim> Mpm<D> {
         self.node_places.get_or_init(|| self.on_nodes().place)
     }
 
-    /// Tiles with the mass and momentum of particles as they are.
-    fn tiles_now(&self) -> Vec<Node> {
+    /// Tiles with the mass and momentum of particles as they are, of one field or all.
+    fn tiles_now(&self, field: Option<usize>) -> Vec<Node> {
         let (grid, all) = (&self.grid, self.particles.givers());
         let mut tiles = vec![Node::ZERO; grid.tile_nodes()];
-        for group in &self.groups {
+        for group in self.groups.iter().filter(|group| field.is_none_or(|field| group.field == field)) {
             grid.tile_blocks().for_each(&mut tiles[..], |home, tile| {
                 let range = group.starts[home] as usize..group.starts[home + 1] as usize;
                 let mut batch = Batch::new();
@@ -265,17 +270,19 @@ impl<D: Dim> Mpm<D> {
         tiles
     }
 
-    /// Mass and momentum of all nodes.
-    fn sums_now(&self) -> Vec<Node> {
-        let tiles = self.tiles_now();
-        let mut sums = vec![Node::ZERO; self.grid.sums.len()];
-        self.grid.node_blocks().for_each(&mut sums[..], |block, sums| self.grid.collect(block, &tiles, sums));
+    /// Mass and momentum of all nodes, of one field or all.
+    fn sums_now(&self, field: Option<usize>) -> Vec<Node> {
+        let tiles = self.tiles_now(field);
+        let cells = block_cells::<D>();
+        let blocks = Blocks::new(self.grid.blocks().len() * cells, cells);
+        let mut sums = vec![Node::ZERO; self.grid.blocks().len() * cells];
+        blocks.for_each(&mut sums[..], |block, sums| self.grid.collect(block, &tiles, sums));
         sums
     }
 
     fn on_nodes(&self) -> OnNodes<D> {
         let mut nodes = OnNodes { place: Vec::new(), mass: Vec::new(), velocity: Vec::new() };
-        for (k, node) in self.sums_now().iter().enumerate().filter(|(_, node)| node.0[0] > 0.0) {
+        for (k, node) in self.sums_now(None).iter().enumerate().filter(|(_, node)| node.0[0] > 0.0) {
             let cells = block_cells::<D>();
             nodes.place.push(self.grid.lattice.node(self.grid.blocks()[k / cells], k % cells));
             nodes.mass.push(node.0[0]);
@@ -284,24 +291,26 @@ impl<D: Dim> Mpm<D> {
         nodes
     }
 
-    /// Symmetric part of the velocity gradient at each particle.
+    /// Symmetric part of the velocity gradient at each particle, of the velocities of its own field.
     fn strain_rates(&self) -> Vec<SymmetricTensor> {
-        let mut grid = Cow::Borrowed(&self.grid);
-        let sums = self.sums_now();
-        for (node, motion) in sums.iter().zip(&mut grid.to_mut().motion) {
-            *motion = Node::ZERO;
-            for axis in (0..D::N).filter(|_| node.0[0] > 0.0) {
-                motion.0[axis] = node.0[1 + axis] / node.0[0];
-            }
-        }
+        let mut grid = self.grid.clone();
+        grid.set_fields(1);
         let mut rates = vec![SymmetricTensor::ZERO; self.len()];
         let mut tile = vec![Node::ZERO; grid.tile_shape().nodes];
-        for group in &self.groups {
-            for home in 0..grid.homes().len() {
-                let range = group.starts[home] as usize..group.starts[home + 1] as usize;
-                if !range.is_empty() {
-                    grid.fetch(home, &mut tile);
-                    self.rates_in(home, &tile, range, &mut rates);
+        for field in 0..self.grid.fields {
+            for (node, motion) in self.sums_now(Some(field)).iter().zip(&mut grid.motion) {
+                *motion = Node::ZERO;
+                for axis in (0..D::N).filter(|_| node.0[0] > 0.0) {
+                    motion.0[axis] = node.0[1 + axis] / node.0[0];
+                }
+            }
+            for group in self.groups.iter().filter(|group| group.field == field) {
+                for home in 0..grid.homes().len() {
+                    let range = group.starts[home] as usize..group.starts[home + 1] as usize;
+                    if !range.is_empty() {
+                        grid.fetch(home, 0, &mut tile);
+                        self.rates_in(home, &tile, range, &mut rates);
+                    }
                 }
             }
         }

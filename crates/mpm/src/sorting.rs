@@ -30,6 +30,8 @@ pub(crate) struct Group<D: Dim> {
     pub(crate) starts: Vec<u32>,
     /// Mean volume of particles that carry stress over that at the start.
     pub(crate) looseness: f64,
+    /// The set of nodal sums and motions that is its own, or shared with others.
+    pub(crate) field: usize,
 }
 
 impl<D: Dim> Sorting<D> {

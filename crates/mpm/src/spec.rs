@@ -1,7 +1,7 @@
 //! What a scene says of this method (feature `serde`).
 
 use crate::setup::{ObjectiveRate, Options, Scheme, ShapeFunctions, VelocityUpdate};
-use granular_core::units::{Frequency, Length, Time};
+use granular_core::units::{Frequency, Length, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -30,6 +30,10 @@ pub struct MpmSpec {
     /// What walls do; by default all are rough with the friction of their material.
     #[serde(default)]
     pub walls: std::collections::BTreeMap<String, ConditionSpec>,
+    /// Bodies that may part and slide along one another: contacts between all bodies of two continua, or among those of one. Bodies that are in
+    /// no contact stick where they meet.
+    #[serde(default)]
+    pub contacts: Vec<BodyContactSpec>,
     /// Horizontal over vertical stress at the start, where the weight above makes the vertical one; without it there is no
     /// stress at the start.
     #[serde(default)]
@@ -108,6 +112,13 @@ pub enum ConditionSpec {
     Fixed,
     /// The material keeps to the wall and slides along it freely: a roller, or a plane of symmetry.
     Slip,
+    /// Waves leave through the wall, as if the material went on behind it; for waves about a state without stress.
+    Absorbing {
+        /// Speed of compression waves of the material.
+        compression_speed: Velocity,
+        /// Speed of its shear waves.
+        shear_speed: Velocity,
+    },
     /// Coulomb friction; what moves away from the wall is free.
     Frictional {
         /// Coefficient of friction of what slides.
@@ -116,6 +127,16 @@ pub enum ConditionSpec {
         #[serde(default)]
         static_friction: Option<f64>,
     },
+}
+
+/// A contact between bodies: `(between: ("sand", "block"), friction: 0.4)`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyContactSpec {
+    /// Names of the two continua, which may be the same.
+    pub between: (String, String),
+    /// Coefficient of friction; 0 for none.
+    pub friction: f64,
 }
 
 impl MpmSpec {

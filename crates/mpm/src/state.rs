@@ -48,6 +48,7 @@ impl<D: Dim> Mpm<D> {
             self.walls.iter().for_each(|wall| put(numbers_of(wall.condition)));
         });
         to.put("forces on walls", &self.wall_forces);
+        self.contacts.save(to);
         self.clock.save(to);
         self.moving.save(to);
     }
@@ -69,7 +70,7 @@ impl<D: Dim> Mpm<D> {
         for (group, looseness) in self.groups.iter_mut().zip(looseness) {
             group.looseness = looseness;
         }
-        let losses = numbers(LOSSES, 6)?;
+        let losses = numbers(LOSSES, 9)?;
         self.losses = Losses::from_array(std::array::from_fn(|k| losses[k]));
         self.injected = numbers("energy put in", 1)?[0];
         self.options.local_damping = numbers("local damping", 1)?[0];
@@ -84,6 +85,7 @@ impl<D: Dim> Mpm<D> {
         }
         self.wall_forces = from.array_of("forces on walls", self.walls.len())?;
         check_entry("forces on walls", self.wall_forces.iter().all(|force| force.is_finite()))?;
+        self.contacts.restore(from)?;
         self.clock.restore(from)?;
         self.moving.restore(from)?;
         self.moving.place(self.clock.time());
@@ -115,14 +117,16 @@ fn numbers_of(condition: Condition) -> [f64; 3] {
     match condition {
         Condition::Fixed => [0.0; 3],
         Condition::Slip => [1.0, 0.0, 0.0],
+        Condition::Absorbing { compression_speed, shear_speed } => [3.0, compression_speed, shear_speed],
         Condition::Frictional { friction, static_friction } => [2.0, friction, static_friction],
     }
 }
 
-fn condition_of([kind, friction, static_friction]: [f64; 3]) -> Condition {
+fn condition_of([kind, first, second]: [f64; 3]) -> Condition {
     match kind as u8 {
         0 => Condition::Fixed,
         1 => Condition::Slip,
-        _ => Condition::Frictional { friction, static_friction },
+        2 => Condition::Frictional { friction: first, static_friction: second },
+        _ => Condition::Absorbing { compression_speed: first, shear_speed: second },
     }
 }

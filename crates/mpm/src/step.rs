@@ -4,6 +4,7 @@ use crate::batch::{BATCH, Batch};
 use crate::body::Pass;
 use crate::grid::grow;
 use crate::layout::{LONGEST_TRAVEL, Node, block_cells};
+use crate::load::{Givers, load_outline};
 use crate::motion::{Plan, Watch};
 use crate::mpm::Mpm;
 use crate::nodes::{Meeting, Touch};
@@ -18,7 +19,7 @@ const LEAST_MASS: f64 = 1e-60;
 
 /// What nodes do with what particles gave them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Answer {
+pub(crate) enum Answer {
     /// Forces act: the velocity after the step, and what it changed by.
     Accelerate,
     /// The velocity as it is, as the first or second vector; what walls do is found anew from forces, or known.
@@ -49,6 +50,9 @@ impl<D: Dim> Mpm<D> {
             Scheme::ModifiedStressLast => self.modified_stress_last(&plan),
         };
         self.push_walls(dt);
+        if !self.contacts.is_empty() {
+            self.note_contacts(dt);
+        }
         self.clock.step();
         self.steps += 1;
         self.look(dt, watch)
@@ -80,12 +84,36 @@ impl<D: Dim> Mpm<D> {
 
     /// Particles give mass and momentum to tiles, and the force of their stresses.
     fn give(&mut self, force: bool) {
+        if self.grid.fields > 1 {
+            self.give_by_field(force);
+        } else {
+            self.fill_tiles(0, force);
+        }
+    }
+
+    /// Particles of a field give to tiles.
+    pub(crate) fn fill_tiles(&mut self, field: usize, force: bool) {
+        let per_cell = 1.0 / self.grid.lattice.cell;
+        let (load, force) = (self.kernels.load, force.then_some(per_cell));
+        self.fill_tiles_with(field, |rows, givers| load(rows, givers, force));
+    }
+
+    /// Particles of a field give to tiles where it ends.
+    pub(crate) fn fill_tiles_with_outlines(&mut self, field: usize) {
+        let frame = (self.grid.lattice.origin, 1.0 / self.grid.lattice.cell);
+        self.fill_tiles_with(field, |rows, givers| load_outline(rows, givers, frame));
+    }
+
+    fn fill_tiles_with(
+        &mut self,
+        field: usize,
+        load: impl Fn(&mut [[Node; BATCH]; 4], &Givers<'_, D>) + Sync,
+    ) {
         let Self { grid, groups, particles, tiles, kernels, .. } = self;
-        let (blocks, per_cell) = (grid.tile_blocks(), 1.0 / grid.lattice.cell);
-        let force = force.then_some(per_cell);
+        let blocks = grid.tile_blocks();
         grow(tiles, grid.tile_nodes());
         tiles.resize(grid.tile_nodes(), Node::ZERO);
-        for (k, group) in groups.iter().enumerate() {
+        for (k, group) in groups.iter().filter(|group| group.field == field).enumerate() {
             blocks.for_each(&mut tiles[..], |home, tile| {
                 if k == 0 {
                     tile.fill(Node::ZERO);
@@ -98,7 +126,7 @@ impl<D: Dim> Mpm<D> {
                 let mut batch = Batch::new();
                 for from in range.clone().step_by(BATCH) {
                     let givers = all.range(from, (from + BATCH).min(range.end));
-                    (kernels.load)(&mut batch.rows, &givers, force);
+                    load(&mut batch.rows, &givers);
                     let places = (givers.position, givers.width);
                     (kernels.give)(&mut batch, grid.tile_shape(), &corner, places, tile);
                 }
@@ -108,20 +136,33 @@ impl<D: Dim> Mpm<D> {
 
     /// Nodes collect what tiles hold, and find how they move.
     fn answer(&mut self, dt: f64, answer: Answer) {
-        let Self { grid, tiles, touches, walls, gravity, options, heaviest, damped, .. } = self;
+        let walls = std::mem::take(&mut self.walls);
         let rule = NodeRule::<D> {
             dt,
-            gravity: *gravity,
-            local_damping: options.local_damping,
-            least_mass: LEAST_MASS * *heaviest,
-            walls,
+            gravity: self.gravity,
+            local_damping: self.options.local_damping,
+            least_mass: LEAST_MASS * self.heaviest,
+            walls: &walls,
+            dt_per_cell: dt / self.grid.lattice.cell,
         };
+        self.damped.resize(self.grid.node_blocks().count(), 0.0);
+        if self.grid.fields > 1 {
+            self.answer_by_field(&rule, answer);
+        } else {
+            self.answer_as_one(&rule, answer);
+        }
+        self.walls = walls;
+        if answer == Answer::Accelerate && self.options.ledger {
+            self.losses.damping += self.damped.iter().sum::<f64>();
+        }
+    }
+
+    fn answer_as_one(&mut self, rule: &NodeRule<'_, D>, answer: Answer) {
+        let Self { grid, tiles, touches, damped, .. } = self;
         let (mut sums, mut motion) = (std::mem::take(&mut grid.sums), std::mem::take(&mut grid.motion));
-        let blocks = grid.node_blocks();
-        damped.resize(blocks.count(), 0.0);
         let touching = Cut::new(&touches.starts, &mut touches.list);
         let work = (&mut sums[..], &mut motion[..], touching, PerBlock(&mut damped[..]));
-        blocks.for_each(work, |block, (sums, motion, touches, damped)| {
+        grid.node_blocks().for_each(work, |block, (sums, motion, touches, damped)| {
             grid.collect(block, tiles, sums);
             match answer {
                 Answer::Accelerate => damped.0[0] = rule.accelerate(sums, motion, touches.items),
@@ -129,9 +170,6 @@ impl<D: Dim> Mpm<D> {
             }
         });
         (grid.sums, grid.motion) = (sums, motion);
-        if answer == Answer::Accelerate && options.ledger {
-            self.losses.damping += self.damped.iter().sum::<f64>();
-        }
     }
 
     /// Particles take what they change by.
@@ -160,6 +198,7 @@ impl<D: Dim> Mpm<D> {
                 mass: &particles.mass[range],
                 width,
                 density: group.density,
+                field: group.field,
                 tiles,
                 watches,
             });
@@ -181,6 +220,7 @@ impl<D: Dim> Mpm<D> {
             if self.options.ledger {
                 self.losses.friction += touch.lost[0];
                 self.losses.stopping += touch.lost[1];
+                self.losses.absorbed += touch.lost[2];
                 work += touch.impulse().dot(touch.velocity);
             }
         }
@@ -206,6 +246,7 @@ impl<D: Dim> Mpm<D> {
         self.travel += self.fastest * dt;
         if self.travel > LONGEST_TRAVEL * self.grid.lattice.cell {
             self.sort()?;
+            self.watch_thin_walls()?;
         }
         Ok(())
     }
@@ -226,17 +267,24 @@ impl<D: Dim> Mpm<D> {
 }
 
 /// How nodes move.
-struct NodeRule<'a, D: Dim> {
+pub(crate) struct NodeRule<'a, D: Dim> {
     dt: f64,
     gravity: D::Vec,
-    local_damping: f64,
+    pub(crate) local_damping: f64,
     least_mass: f64,
     walls: &'a [Wall<D>],
+    /// Step over the edge of a cell \[s/m\].
+    dt_per_cell: f64,
 }
 
 impl<D: Dim> NodeRule<'_, D> {
+    /// Walls at a node with a mass.
+    pub(crate) fn meeting<'t>(&'t self, touches: &'t mut [Touch<D>], mass: f64) -> Meeting<'t, D> {
+        Meeting { touches, walls: self.walls, mass, dt_per_cell: self.dt_per_cell }
+    }
+
     /// Mean velocity of what is on a node, and its change by forces; none on an empty node.
-    fn mean(&self, sum: &Node) -> Option<(D::Vec, D::Vec)> {
+    pub(crate) fn mean(&self, sum: &Node) -> Option<(D::Vec, D::Vec)> {
         let mass = sum.0[0];
         if mass <= self.least_mass {
             return None;
@@ -253,8 +301,7 @@ impl<D: Dim> NodeRule<'_, D> {
         touches.iter_mut().for_each(Touch::rest);
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let mut meeting =
-                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let mut meeting = self.meeting(touching.of(node, touches), sum.0[0]);
             let Some((mean, change)) = self.mean(sum) else {
                 *motion = Node::ZERO;
                 continue;
@@ -272,7 +319,7 @@ impl<D: Dim> NodeRule<'_, D> {
     }
 
     /// Local damping: a share of the change of velocity, which walls have had their part in, against the velocity.
-    fn resisting(&self, change: D::Vec, velocity: D::Vec) -> D::Vec {
+    pub(crate) fn resisting(&self, change: D::Vec, velocity: D::Vec) -> D::Vec {
         D::Vec::from_fn(|axis| {
             -self.local_damping * change.component(axis).abs() * sign(velocity.component(axis))
         })
@@ -288,8 +335,7 @@ impl<D: Dim> NodeRule<'_, D> {
     ) {
         let mut touching = Touching { from: 0 };
         for (node, (sum, motion)) in sums.iter().zip(motion).enumerate().take(block_cells::<D>()) {
-            let mut meeting =
-                Meeting { touches: touching.of(node, touches), walls: self.walls, mass: sum.0[0] };
+            let mut meeting = self.meeting(touching.of(node, touches), sum.0[0]);
             let now = self.mean(sum).map_or(D::Vec::ZERO, |(mean, change)| {
                 if anew {
                     meeting.act(mean, change);
@@ -302,10 +348,15 @@ impl<D: Dim> NodeRule<'_, D> {
 }
 
 /// Puts one of the vectors of a node.
-fn put<D: Dim>(node: &mut Node, vector: usize, value: D::Vec) {
+pub(crate) fn put<D: Dim>(node: &mut Node, vector: usize, value: D::Vec) {
     for axis in 0..D::N {
         node.0[vector * D::N + axis] = value.component(axis);
     }
+}
+
+/// One of the vectors of a node.
+pub(crate) fn vector_of<D: Dim>(node: &Node, vector: usize) -> D::Vec {
+    D::Vec::from_fn(|axis| node.0[vector * D::N + axis])
 }
 
 /// Walks along the touches of a block, node by node.

@@ -10,6 +10,14 @@ pub enum Condition {
     Fixed,
     /// The node keeps to the wall but slides along it freely: a roller, or a plane of symmetry.
     Slip,
+    /// Dashpots, as if the material went on behind the wall: a wave that meets it head on leaves, one that meets it aslant leaves in part
+    /// \[Lysmer1969\]. A load that stays pushes the wall away slowly, so that it is for waves about a state without stress.
+    Absorbing {
+        /// Speed of compression waves of the material \[m/s\].
+        compression_speed: f64,
+        /// Speed of its shear waves \[m/s\].
+        shear_speed: f64,
+    },
     /// Coulomb friction \[Bandara2013\]: what moves into the wall is stopped and rubs, what moves away is free.
     Frictional {
         /// Coefficient of friction of what slides.
@@ -26,6 +34,14 @@ impl Condition {
     }
 
     fn check(self) -> Result<(), SetupError> {
+        if let Self::Absorbing { compression_speed, shear_speed } = self {
+            let speeds =
+                [("speed of compression waves", compression_speed), ("speed of shear waves", shear_speed)];
+            let wrong = speeds.into_iter().find(|(_, speed)| !(*speed >= 0.0 && speed.is_finite()));
+            return wrong.map_or(Ok(()), |(what, speed)| {
+                Err(SetupError::new(what, speed, "zero or more m/s, and finite"))
+            });
+        }
         let Self::Frictional { friction, static_friction } = self else { return Ok(()) };
         if !(friction >= 0.0 && friction.is_finite()) {
             return Err(SetupError::new("friction", friction, "zero or more, and finite"));

@@ -1,8 +1,8 @@
 //! Fields from the sums in cells.
 
-use super::catalogue::{FIELDS, OUTSIDE, needs, shown};
+use super::catalogue::{OUTSIDE, fields, needs, shown};
 use super::grid::CoarseGrid;
-use super::source::CoarseSource;
+use super::source::{CoarseSource, Kind};
 use super::sums::{Bulk, Sums, Wanted, mean_velocity};
 use crate::dim::{Dim, Linear, Vector};
 use crate::field::{FieldRef, FieldSink, Shown};
@@ -15,6 +15,7 @@ use glam::DVec3;
 pub struct CoarseFields<D: Dim> {
     grid: CoarseGrid<D>,
     sums: Sums<D>,
+    kind: Kind,
 }
 
 /// The value, or not a number where there is none.
@@ -25,7 +26,7 @@ fn or_nothing(value: Option<f64>) -> f64 {
 impl<D: Dim> CoarseFields<D> {
     /// All fields of what a solver lends.
     pub fn of(source: &CoarseSource<'_, D>, grid: &CoarseGrid<D>) -> Self {
-        Self { grid: *grid, sums: Sums::of(source, grid, Wanted::ALL) }
+        Self { grid: *grid, sums: Sums::of(source, grid, Wanted::ALL), kind: source.kind() }
     }
 
     /// Shows fields on a grid; sums only what the sink wants, and asks for no `source` when it wants nothing.
@@ -35,12 +36,19 @@ impl<D: Dim> CoarseFields<D> {
         sink: &mut dyn FieldSink,
     ) {
         let Some(wanted) = needs(|name| sink.wants(name)) else { return };
-        Self { grid: *grid, sums: Sums::of(&source(), grid, wanted) }.show(sink);
+        let source = source();
+        Self { grid: *grid, sums: Sums::of(&source, grid, wanted), kind: source.kind() }.show(sink);
     }
 
-    /// Everything that [`CoarseFields::show_of`] can show.
+    /// Everything that [`CoarseFields::show_of`] can show of grains.
     pub fn catalogue() -> Vec<Shown> {
-        shown()
+        shown(Kind::Grains)
+    }
+
+    /// Everything that it can show of particles that carry stresses themselves; more when their grains are known
+    /// ([`CoarseSource::constituents`]).
+    pub fn catalogue_of_continuum(knows_grains: bool) -> Vec<Shown> {
+        shown(if knows_grains { Kind::ContinuumOfGrains } else { Kind::Continuum })
     }
 
     fn per_volume<T>(&self, sums: &[T], value: impl Fn(&T) -> f64) -> Vec<f64> {
@@ -152,7 +160,9 @@ impl<D: Dim> CoarseFields<D> {
 
     /// Mean of the normal stresses along the axes \[Pa\].
     pub fn pressure(&self) -> Vec<f64> {
-        self.stress().iter().map(|stress| stress.trace() / D::N as f64).collect()
+        // In the plane a continuum has a stress across it, which grains do not.
+        let along = |stress: &SymmetricTensor| stress.trace() - if D::N == 2 { stress.zz } else { 0.0 };
+        self.stress().iter().map(|stress| along(stress) / D::N as f64).collect()
     }
 
     /// Mean square of the velocities about the mean, per axis \[m^2/s^2\].
@@ -197,7 +207,7 @@ impl<D: Dim> CoarseFields<D> {
 
     /// Shows what the sink wants; it must have been summed.
     fn show(&self, sink: &mut dyn FieldSink) {
-        for &(name, unit, _) in FIELDS {
+        for &(name, unit, _) in fields(self.kind) {
             if sink.wants(name) {
                 self.show_one(name, unit, sink);
             }

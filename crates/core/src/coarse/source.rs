@@ -28,6 +28,15 @@ impl Sizes<'_> {
     }
 }
 
+/// Grains that the particles of a continuum stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constituents {
+    /// Density of a grain \[kg/m^3\].
+    pub density: f64,
+    /// Diameter of the grains \[m\].
+    pub diameter: f64,
+}
+
 /// A periodic cell: what is in it is repeated without end.
 #[derive(Clone, Copy, Debug)]
 pub struct Periods<D: Dim> {
@@ -72,9 +81,43 @@ pub struct CoarseSource<'a, D: Dim> {
     pub periods: Option<Periods<D>>,
     /// Stress that each particle carries itself \[Pa\], positive in compression; empty for grains, whose stress is in the
     /// forces between them.
-    pub stress: &'a [SymmetricTensor],
+    pub stress: Cow<'a, [SymmetricTensor]>,
+    /// Grains of a continuum, for its solid fraction and its inertial number; none for particles that are grains themselves, and
+    /// where nobody says.
+    pub constituents: Option<Constituents>,
     /// Calls back with every force between particles, or between a particle and a wall, in a fixed order.
     pub visit_branches: &'a VisitBranches<'a, D>,
     /// No branch is longer \[m\].
     pub longest_branch: f64,
+}
+
+impl<D: Dim> CoarseSource<'_, D> {
+    /// What is seen on the grid.
+    pub(super) fn kind(&self) -> Kind {
+        match (self.stress.is_empty(), self.constituents) {
+            (true, _) => Kind::Grains,
+            (false, None) => Kind::Continuum,
+            (false, Some(_)) => Kind::ContinuumOfGrains,
+        }
+    }
+
+    /// Volume of the solid in a particle, and diameter.
+    #[inline(always)]
+    pub(super) fn solid(&self, index: usize) -> (f64, f64) {
+        match self.constituents {
+            Some(grains) => (self.mass[index] / grains.density, grains.diameter),
+            None => self.size.of::<D>(index),
+        }
+    }
+}
+
+/// What particles are, which says what can be shown of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Grains with contacts.
+    Grains,
+    /// Particles with stresses.
+    Continuum,
+    /// Those, of grains that are known.
+    ContinuumOfGrains,
 }

@@ -169,7 +169,7 @@ impl<D: Dim> Part<'_, D> {
 
     fn grains(&self, source: &CoarseSource<'_, D>, seen: &[Seen<D>], bulk: &mut [Bulk<D>]) {
         for &Seen { grain, place, velocity } in self.near(seen) {
-            let (mass, (volume, diameter)) = (source.mass[grain], source.size.of::<D>(grain));
+            let (mass, (volume, diameter)) = (source.mass[grain], source.solid(grain));
             let diameter = diameter * mass;
             let momentum = velocity * mass;
             self.spread(&self.grid.weights(place), |cell, weight| {

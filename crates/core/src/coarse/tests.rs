@@ -23,7 +23,8 @@ fn a_continuum_with_one_stress_everywhere_shows_it_in_every_cell() {
             is_periodic: [true, true, false],
             gradient: Matrix::zero(),
         }),
-        stress: &vec![stress; count],
+        stress: vec![stress; count].into(),
+        constituents: None,
         visit_branches: &|_| {},
         longest_branch: 0.0,
     };
@@ -50,7 +51,8 @@ fn branches_are_kept<D: Dim>() {
         mass: &[1.0, 2.0],
         size: Sizes::Radii(&[0.2, 0.2]),
         periods: None,
-        stress: &[],
+        stress: vec![].into(),
+        constituents: None,
         visit_branches: &|visit| {
             visit(ForceBranch {
                 first: 1,

@@ -104,47 +104,7 @@ fn series(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::{Jop, Linear};
-
-    fn exact(value: f64) -> Estimate {
-        Estimate { value, error: 0.01 }
-    }
-
-    fn material(dimension: Dimension) -> MaterialFile {
-        let point = |level: f64, number: f64| Point {
-            stress_over_modulus: level,
-            normal_stress: exact(1e3),
-            held_stress: Estimate::default(),
-            inertial_number: exact(number),
-            friction: exact(0.25 + number),
-            solid_fraction: exact(0.8 - 0.3 * number),
-        };
-        let linear = Linear { static_friction: exact(0.25), slope: exact(1.0) };
-        MaterialFile {
-            version: 1,
-            title: "Glass".to_owned(),
-            dimension,
-            grains: 10,
-            seeds: 2,
-            density: 2650.0,
-            diameter: 1e-3,
-            contact_friction: 0.5,
-            critical_friction: exact(0.26),
-            critical_angle: exact(14.6),
-            peak_friction: exact(0.4),
-            peak_dilation: exact(10.0),
-            linear,
-            jop: Jop {
-                static_friction: exact(0.25),
-                dynamic_friction: exact(0.6),
-                inertial_number: exact(0.3),
-            },
-            solid_fraction: Linear { static_friction: exact(0.8), slope: exact(-0.3) },
-            young_modulus: exact(1e6),
-            poisson_ratio: exact(0.3),
-            points: vec![point(1e-3, 0.01), point(1e-3, 0.1), point(3e-4, 0.03)],
-        }
-    }
+    use crate::material_file::example as material;
 
     #[test]
     fn a_figure_has_a_series_per_stress_and_what_others_found() {

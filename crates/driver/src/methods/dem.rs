@@ -9,7 +9,6 @@ mod materials;
 mod member;
 mod pairs;
 mod probes;
-mod push;
 mod region;
 mod sample;
 mod sample_file;
@@ -43,6 +42,7 @@ impl Claims for DemSpec {
         Part::Packed,
         Part::BodyChanges,
         Part::GrainChanges,
+        Part::Pushes,
     ];
     const STEP_KEY: &'static str = "steps_per_contact";
 }

@@ -1,6 +1,7 @@
 //! The material point method, for a continuum.
 
 mod build;
+mod continuum;
 pub mod element;
 mod materials;
 mod member;
@@ -8,6 +9,8 @@ mod sample;
 mod stages;
 #[cfg(test)]
 mod tests;
+
+pub use continuum::ContinuumSpec;
 
 use crate::methods::contract::{Building, Claims, Method};
 use crate::methods::member::Member;
@@ -27,6 +30,7 @@ impl Claims for MpmSpec {
         Part::StageStep,
         Part::Quiet,
         Part::BodyChanges,
+        Part::Pushes,
     ];
     const STEP_KEY: &'static str = "courant";
 }

@@ -31,6 +31,8 @@ pub enum Part {
     Packed,
     /// Changes that whatever moves knows: motion that stops, walls that open and start.
     BodyChanges,
+    /// Pushes: a velocity that all get at once.
+    Pushes,
     /// Changes of grains, their friction, and cells.
     GrainChanges,
     /// Changes of faces and obstacles of a fluid.

@@ -1,9 +1,9 @@
 //! What scenes say of methods.
 
+#[cfg(feature = "mpm")]
+pub use super::mpm::ContinuumSpec;
 use super::table::methods;
 use crate::scene_file::SceneProblem;
-#[cfg(feature = "mpm")]
-pub use granular_constitutive::spec::ContinuumSpec;
 #[cfg(feature = "dem")]
 pub use granular_dem::spec::{GrainSpec, MaterialSpec, PairSpec};
 use schemars::JsonSchema;

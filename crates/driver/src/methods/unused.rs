@@ -29,9 +29,13 @@ fn instead(part: Part, uses: &dyn Fn(Part) -> bool) -> &'static str {
         Part::Quiet | Part::Packed => "For or Steady",
         Part::GrainChanges if uses(Part::FluidChanges) => "FaceVelocity, ObstacleSpin or Gravity",
         Part::FluidChanges if uses(Part::GrainChanges) => "a change of grains, walls or the cell",
-        Part::BodyChanges if uses(Part::FluidChanges) => "FaceVelocity, ObstacleSpin or Gravity",
-        Part::GrainChanges if uses(Part::BodyChanges) => "Gravity, StopMotion, Open, Close, Start or Halt",
-        Part::BodyChanges | Part::GrainChanges | Part::FluidChanges => "no change",
+        Part::BodyChanges | Part::Pushes if uses(Part::FluidChanges) => {
+            "FaceVelocity, ObstacleSpin or Gravity"
+        }
+        Part::GrainChanges if uses(Part::BodyChanges) => {
+            "Gravity, StopMotion, Push, Open, Close, Start or Halt"
+        }
+        Part::BodyChanges | Part::Pushes | Part::GrainChanges | Part::FluidChanges => "no change",
         _ => "nothing here",
     }
 }
@@ -77,7 +81,7 @@ pub(crate) fn given(scene: &Scene) -> Vec<Given> {
                 Change::Gravity(_) => continue,
                 Change::Friction { .. } => (Part::GrainChanges, "Friction"),
                 Change::StopMotion => (Part::BodyChanges, "StopMotion"),
-                Change::Push { .. } => (Part::GrainChanges, "Push"),
+                Change::Push { .. } => (Part::Pushes, "Push"),
                 Change::Shake { .. } => (Part::GrainChanges, "Shake"),
                 Change::Open(_) => (Part::BodyChanges, "Open"),
                 Change::Close(_) => (Part::BodyChanges, "Close"),

@@ -1,10 +1,12 @@
-//! Files that a scene reads: samples and meshes.
+//! Files that a scene reads: samples, meshes and calibrated laws.
 //!
 //! Their paths count from the folder of the scene. A run keeps copies in its folder, which then holds all that it needs; a
 //! sweep knows a run by the contents of its files too.
 
 use super::{Sample, Scene, WallSpec};
 use crate::failure::Failure;
+#[cfg(feature = "mpm")]
+use crate::problems::quoted;
 use crate::scene_file::{SceneProblem, SceneText};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::Xxh3;
@@ -13,6 +15,9 @@ use xxhash_rust::xxh3::Xxh3;
 pub(crate) const SAMPLE: &str = "initial-sample.csv";
 /// Folder in a run folder of the meshes that walls are made of.
 pub(crate) const MESHES: &str = "meshes";
+
+/// Folder in a run folder of the laws that a calibration gave.
+pub(crate) const CONTINUA: &str = "continua";
 
 /// A file that a scene reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +55,14 @@ impl Scene {
             if let WallSpec::Mesh { file, .. } = wall {
                 let (key, kept_as) = (format!("walls.{k}.file"), format!("{MESHES}/{k}.stl"));
                 files.push(FileRead { key, path: self.folder.join(file), kept_as });
+            }
+        }
+        #[cfg(feature = "mpm")]
+        for (k, (name, continuum)) in self.continua.iter().enumerate() {
+            if let Some(calibrated) = &continuum.calibrated {
+                let (key, kept_as) =
+                    (format!("continua.{}.calibrated.file", quoted(name)), format!("{CONTINUA}/{k}.ron"));
+                files.push(FileRead { key, path: self.folder.join(&calibrated.file), kept_as });
             }
         }
         files

@@ -60,8 +60,23 @@ pub fn plot(folders: &[PathBuf], view: &View) -> Result<PathBuf, Failure> {
     for folder in folders {
         let sweep = Collected::read(folder)?;
         let name = folder.file_name().filter(|_| folders.len() > 1).unwrap_or_default();
-        sweep.add_curves(&name.to_string_lossy(), y, view, &mut curves, &mut counts)?;
-        labels.get_or_insert([sweep.along(view.x.as_deref())?.to_owned(), sweep.column(y).to_owned()]);
+        let of_solvers = sweep.solvers_with(y);
+        for (k, solver) in of_solvers.iter().enumerate() {
+            // Runs count once, however many curves they have.
+            let before = (counts.runs, counts.left_out);
+            let name = name.to_string_lossy();
+            let parts = [&*name, solver.trim_end_matches('.')];
+            let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
+            sweep.add_curves(&label, [solver, y], view, &mut curves, &mut counts)?;
+            if k > 0 {
+                (counts.runs, counts.left_out) = before;
+            }
+        }
+        // One solver's number has its unit; `continuum.` is told by the label of the curve.
+        let solver = of_solvers.first().copied().unwrap_or_default();
+        let of_solver = |name: &str| sweep.column_of(solver, name).trim_start_matches(solver).to_owned();
+        let x = sweep.along(solver, view.x.as_deref())?.trim_start_matches(solver).to_owned();
+        labels.get_or_insert([x, of_solver(y)]);
     }
     let [x_label, y_label] = labels.unwrap_or_default();
     let chart = chart([&x_label, &y_label], view, curves, &counts)?;
@@ -149,12 +164,12 @@ impl Collected {
     fn add_curves(
         &self,
         name: &str,
-        y: &str,
+        [solver, y]: [&str; 2],
         view: &View,
         curves: &mut Vec<Groups>,
         counts: &mut Counts,
     ) -> Result<(), Failure> {
-        let (x, y) = (self.along(view.x.as_deref())?, self.column(y));
+        let (x, y) = (self.along(solver, view.x.as_deref())?, self.column_of(solver, y));
         let by = view.by.as_deref().map(|by| self.axis(by, "--by")).transpose()?;
         let before = counts.left_out;
         for run in &self.runs {
@@ -197,10 +212,10 @@ impl Collected {
         Err(Failure::io(flag, format!("`{name}` is not an axis of this sweep; allowed: {axes}")))
     }
 
-    /// What is along x: an axis, or a number that runs have measured.
-    fn along<'a>(&'a self, name: Option<&'a str>) -> Result<&'a str, Failure> {
+    /// What is along x: an axis, or a number that runs have measured, of a solver where each has its own.
+    fn along<'a>(&'a self, solver: &str, name: Option<&'a str>) -> Result<&'a str, Failure> {
         let name = name.or(self.axes.first().map(String::as_str)).unwrap_or_default();
-        let column = self.column(name);
+        let column = self.column_of(solver, name);
         if self.runs.iter().any(|run| run["measures"][column].is_number()) {
             return Ok(column);
         }
@@ -210,11 +225,33 @@ impl Collected {
         })
     }
 
-    /// The column of this name, which may leave its unit out: `runout` is `runout [1]`.
-    fn column<'a>(&'a self, name: &'a str) -> &'a str {
-        let columns = self.runs.iter().filter_map(|run| run["measures"].as_object()).flat_map(|m| m.keys());
-        let bare = |column: &str| column.split_once(" [").map(|(bare, _)| bare == name);
-        columns.into_iter().find(|column| bare(column) == Some(true)).map_or(name, String::as_str)
+    fn columns(&self) -> impl Iterator<Item = &String> {
+        self.runs.iter().filter_map(|run| run["measures"].as_object()).flat_map(|measures| measures.keys())
+    }
+
+    /// Solvers that have a number of this name, `grains.` and `continuum.` of scenes in which several run; one without a name
+    /// where the number is nobody's, or no run has it.
+    fn solvers_with(&self, name: &str) -> Vec<&str> {
+        if self.columns().any(|column| is_called(column, name)) {
+            return vec![""];
+        }
+        let of_solver = |column: &'_ String| {
+            let (solver, _) = column.split_once('.')?;
+            let solver = &column[..=solver.len()];
+            is_called(&column[solver.len()..], name).then_some(solver.len())
+        };
+        let found: BTreeSet<&str> =
+            self.columns().filter_map(|column| Some(&column[..of_solver(column)?])).collect();
+        if found.is_empty() { vec![""] } else { found.into_iter().collect() }
+    }
+
+    /// The column of this name, which may leave its unit out (`runout` is `runout [1]`) and its solver.
+    fn column_of<'a>(&'a self, solver: &str, name: &'a str) -> &'a str {
+        let found = |prefix: &str| {
+            self.columns()
+                .find(|column| column.strip_prefix(prefix).is_some_and(|column| is_called(column, name)))
+        };
+        found("").or_else(|| found(solver)).map_or(name, String::as_str)
     }
 
     /// Where a run stands along x.
@@ -239,6 +276,11 @@ impl Collected {
         }
         format!("no run in {place} has a number `{name}`; allowed: {}", names.join(", "))
     }
+}
+
+/// Whether a column has this name, with its unit or without.
+fn is_called(column: &str, name: &str) -> bool {
+    column == name || column.split_once(" [").is_some_and(|(bare, _)| bare == name)
 }
 
 fn text(value: &Value) -> &str {
@@ -346,6 +388,35 @@ mod tests {
         assert_eq!(number("Ballistic"), None);
     }
 
+    /// Scenes in which two solvers run: a curve each, over an axis or over a number of each.
+    #[test]
+    fn a_number_of_several_solvers_has_a_curve_of_each() {
+        let run = |a: f64| {
+            serde_json::json!({
+                "values": { "a": a.to_string() },
+                "measures": {
+                    "grains.runout [1]": 2.0 * a, "continuum.runout [1]": 3.0 * a, "grains.ratio [1]": 1.1 * a,
+                    "continuum.ratio [1]": a,
+                },
+            })
+        };
+        let (axes, runs) = (vec!["a".to_owned()], vec![run(1.0), run(2.0)]);
+        let sweep = Collected { path: PathBuf::new(), axes, runs };
+        let solvers = sweep.solvers_with("runout");
+        assert_eq!(solvers, ["continuum.", "grains."]);
+        let view = View { x: Some("ratio".to_owned()), ..View::default() };
+        let (mut curves, mut counts) = (Vec::new(), Counts::default());
+        for solver in solvers {
+            sweep.add_curves(solver, [solver, "runout"], &view, &mut curves, &mut counts).unwrap();
+        }
+        let points: Vec<_> =
+            curves.iter().map(|(label, groups)| (label.as_str(), groups[1].clone())).collect();
+        assert_eq!(points, [("continuum.", (2.0, vec![6.0])), ("grains.", (2.2, vec![4.0]))]);
+        assert_eq!(sweep.solvers_with("continuum.runout"), [""]);
+        assert_eq!(sweep.column_of("", "continuum.runout"), "continuum.runout [1]");
+        assert_eq!(sweep.solvers_with("nothing"), [""]);
+    }
+
     #[test]
     fn a_mean_over_an_axis_is_no_standard_error() {
         let run = |a: &str, seed: &str, friction: &str, value: f64| {
@@ -367,7 +438,7 @@ mod tests {
         let drawn = |frictions, by: Option<&str>| {
             let view = View { by: by.map(str::to_owned), ..View::default() };
             let (mut curves, mut counts) = (Vec::new(), Counts::default());
-            sweep(frictions).add_curves("", "runout", &view, &mut curves, &mut counts).unwrap();
+            sweep(frictions).add_curves("", ["", "runout"], &view, &mut curves, &mut counts).unwrap();
             chart(["a", "runout"], &view, curves, &counts).unwrap()
         };
         let seeds = drawn(["0.5", "0.5"], None);

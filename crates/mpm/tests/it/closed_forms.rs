@@ -1,6 +1,6 @@
 //! Small cases with closed forms.
 
-use crate::sample::{SCHEMES, SHAPES};
+use crate::sample::{SCHEMES, SHAPES, alone};
 use granular_constitutive::LinearElastic;
 use granular_core::glam::DVec2;
 use granular_core::{D2, Solver, SymmetricTensor};
@@ -28,27 +28,32 @@ fn tube(along: DVec2, width: f64) -> Vec<Wall<D2>> {
 /// One particle in one cell is a spring: `v = v0 cos(w t)` and `x = x0 exp(v0 / (L w) sin(w t))`.
 #[test]
 fn one_particle_swings_in_its_cell() {
-    for scheme in SCHEMES {
-        let setup = Setup {
-            walls: tube(DVec2::X, 1.0),
-            options: with(ShapeFunctions::Linear, scheme),
-            ..Setup::new(1.0)
-        };
-        let mut mpm = Mpm2::new(setup).unwrap();
-        let particle = Particle::at(DVec2::splat(0.5), 1.0).moving(DVec2::new(0.01, 0.0));
-        mpm.body(LinearElastic::new(4.0 * PI * PI, 0.0).unwrap(), 1.0, &[particle]).unwrap();
-        let dt = 2.5e-4;
-        // Stresses that come last take half a per cent in each period.
-        let quarters = if scheme == Scheme::StressLast { 4 } else { 40 };
-        for quarter in 1..=quarters {
-            mpm.advance(dt, 1000).unwrap();
-            let (time, particle) = (0.25 * f64::from(quarter), mpm.particle(0));
-            let place = 0.5 * (0.01 / TAU * (TAU * time).sin()).exp();
-            assert!((particle.position.x - place).abs() < 0.01 * 0.5 * 0.01 / TAU, "{scheme:?} at {time}");
-            let speed = 0.01 * (TAU * time).cos();
-            assert!((particle.velocity.x - speed).abs() < 0.01 * 0.01, "{scheme:?} at {time}");
+    alone(|| {
+        for scheme in SCHEMES {
+            let setup = Setup {
+                walls: tube(DVec2::X, 1.0),
+                options: with(ShapeFunctions::Linear, scheme),
+                ..Setup::new(1.0)
+            };
+            let mut mpm = Mpm2::new(setup).unwrap();
+            let particle = Particle::at(DVec2::splat(0.5), 1.0).moving(DVec2::new(0.01, 0.0));
+            mpm.body(LinearElastic::new(4.0 * PI * PI, 0.0).unwrap(), 1.0, &[particle]).unwrap();
+            let dt = 2.5e-4;
+            // Stresses that come last take half a per cent in each period.
+            let quarters = if scheme == Scheme::StressLast { 4 } else { 40 };
+            for quarter in 1..=quarters {
+                mpm.advance(dt, 1000).unwrap();
+                let (time, particle) = (0.25 * f64::from(quarter), mpm.particle(0));
+                let place = 0.5 * (0.01 / TAU * (TAU * time).sin()).exp();
+                assert!(
+                    (particle.position.x - place).abs() < 0.01 * 0.5 * 0.01 / TAU,
+                    "{scheme:?} at {time}"
+                );
+                let speed = 0.01 * (TAU * time).cos();
+                assert!((particle.velocity.x - speed).abs() < 0.01 * 0.01, "{scheme:?} at {time}");
+            }
         }
-    }
+    });
 }
 
 /// A bar of 25 m with a wave of 10 m/s in its mode `n`.
@@ -67,27 +72,29 @@ fn bar(mode: u32, options: Options) -> Mpm2 {
 
 #[test]
 fn a_bar_swings_with_its_period_and_keeps_its_energy() {
-    for shape in SHAPES {
-        let mut mpm = bar(1, with(shape, Scheme::ModifiedStressLast));
-        let (dt, start) = (0.01, mpm.energies().mechanical());
-        assert!((start * 13.0 / 25.0 / 0.0625e-4 - 1.0).abs() < 1e-3, "per metre of its height: {start}");
-        let (mut last, mut crossings) = (mpm.momentum().x, Vec::new());
-        let amplitude = last / mpm.mass();
-        assert!((amplitude / (1e-3 * 2.0 / PI) - 1.0).abs() < 0.01, "{shape:?}: {amplitude}");
-        while mpm.time() < 100.0 {
-            mpm.step(dt).unwrap();
-            let now = mpm.momentum().x;
-            if last * now < 0.0 {
-                crossings.push(mpm.time() - dt * now / (now - last));
+    alone(|| {
+        for shape in SHAPES {
+            let mut mpm = bar(1, with(shape, Scheme::ModifiedStressLast));
+            let (dt, start) = (0.01, mpm.energies().mechanical());
+            assert!((start * 13.0 / 25.0 / 0.0625e-4 - 1.0).abs() < 1e-3, "per metre of its height: {start}");
+            let (mut last, mut crossings) = (mpm.momentum().x, Vec::new());
+            let amplitude = last / mpm.mass();
+            assert!((amplitude / (1e-3 * 2.0 / PI) - 1.0).abs() < 0.01, "{shape:?}: {amplitude}");
+            while mpm.time() < 100.0 {
+                mpm.step(dt).unwrap();
+                let now = mpm.momentum().x;
+                if last * now < 0.0 {
+                    crossings.push(mpm.time() - dt * now / (now - last));
+                }
+                last = now;
             }
-            last = now;
+            assert_eq!(crossings.len(), 20);
+            let period = (crossings[19] - crossings[1]) / 9.0;
+            assert!((period / 10.0 - 1.0).abs() < 0.01, "{shape:?}: {period} s");
+            let drift = mpm.energies().mechanical() / start - 1.0;
+            assert!(drift.abs() < 1e-3, "{shape:?}: {drift}");
         }
-        assert_eq!(crossings.len(), 20);
-        let period = (crossings[19] - crossings[1]) / 9.0;
-        assert!((period / 10.0 - 1.0).abs() < 0.01, "{shape:?}: {period} s");
-        let drift = mpm.energies().mechanical() / start - 1.0;
-        assert!(drift.abs() < 1e-3, "{shape:?}: {drift}");
-    }
+    });
 }
 
 /// A column that is loaded by its weight, slowly and with damping, and what it does at rest.
@@ -105,49 +112,57 @@ fn loaded(mut mpm: Mpm2, gravity: f64, dt: f64, steps: u64) -> Mpm2 {
 /// functions are left out: crossing particles keep this column trembling, and it sags.
 #[test]
 fn a_column_sinks_by_its_own_weight() {
-    let (height, weight, young) = (50.0, 800.0, 1e5);
-    for (shape, allowed) in [(ShapeFunctions::UniformGimp, 0.03), (ShapeFunctions::QuadraticBspline, 0.04)] {
-        let options = with(shape, Scheme::ModifiedStressLast);
-        let mut mpm = Mpm2::new(Setup { walls: tube(DVec2::Y, 1.0), options, ..Setup::new(1.0) }).unwrap();
-        let particles = Particle::<D2>::filling(DVec2::ZERO, DVec2::new(1.0, height), 0.5);
-        mpm.body(LinearElastic::new(young, 0.0).unwrap(), 80.0, &particles).unwrap();
-        let mpm = loaded(mpm, 10.0, 0.012, 16_000);
-        let (mut error, mut farthest) = (0.0, 0.0_f64);
-        for (id, particle) in mpm.particles() {
-            let material = particles[id as usize].position.y;
-            let stress = -weight * (height - material);
-            let place = young / weight * ((stress / young).exp() - (-weight * height / young).exp());
-            farthest = farthest.max((particle.position.y - place).abs() / 41.21);
-            error += (particle.stress.yy - stress).powi(2);
+    alone(|| {
+        let (height, weight, young) = (50.0, 800.0, 1e5);
+        for (shape, allowed) in
+            [(ShapeFunctions::UniformGimp, 0.03), (ShapeFunctions::QuadraticBspline, 0.04)]
+        {
+            let options = with(shape, Scheme::ModifiedStressLast);
+            let mut mpm =
+                Mpm2::new(Setup { walls: tube(DVec2::Y, 1.0), options, ..Setup::new(1.0) }).unwrap();
+            let particles = Particle::<D2>::filling(DVec2::ZERO, DVec2::new(1.0, height), 0.5);
+            mpm.body(LinearElastic::new(young, 0.0).unwrap(), 80.0, &particles).unwrap();
+            let mpm = loaded(mpm, 10.0, 0.02, 9600);
+            let (mut error, mut farthest) = (0.0, 0.0_f64);
+            for (id, particle) in mpm.particles() {
+                let material = particles[id as usize].position.y;
+                let stress = -weight * (height - material);
+                let place = young / weight * ((stress / young).exp() - (-weight * height / young).exp());
+                farthest = farthest.max((particle.position.y - place).abs() / 41.21);
+                error += (particle.stress.yy - stress).powi(2);
+            }
+            let relative = (error / particles.len() as f64).sqrt() / (weight * height);
+            // Stresses are off in the cell at the floor, where particles reach behind it.
+            assert!(farthest < 0.01 && relative < allowed, "{shape:?}: {farthest} {relative}");
         }
-        let relative = (error / particles.len() as f64).sqrt() / (weight * height);
-        // Stresses are off in the cell at the floor, where particles reach behind it.
-        assert!(farthest < 0.01 && relative < allowed, "{shape:?}: {farthest} {relative}");
-    }
+    });
 }
 
 #[test]
 fn a_column_of_soil_settles_elastically() {
-    for shape in SHAPES {
-        let options = with(shape, Scheme::ModifiedStressLast);
-        let cell = 0.01;
-        let mut mpm = Mpm2::new(Setup { walls: tube(DVec2::Y, cell), options, ..Setup::new(cell) }).unwrap();
-        let particles = Particle::<D2>::filling(DVec2::ZERO, DVec2::new(cell, 0.2), 0.25 * cell);
-        mpm.body(LinearElastic::new(1.98e6, 0.23).unwrap(), 1925.0, &particles).unwrap();
-        let mpm = loaded(mpm, 9.81, 1e-4, 8000);
-        let top =
-            (0..particles.len()).max_by(|&a, &b| particles[a].position.y.total_cmp(&particles[b].position.y));
-        let top = top.unwrap();
-        let material = particles[top].position.y;
-        let modulus = 2.29539e6;
-        let expected = 1925.0 * 9.81 / modulus * (0.2 * material - 0.5 * material * material);
-        let settled = material - mpm.particle(top as u32).position.y;
-        // Splines that reach behind a wall feel it half a cell deeper.
-        let deeper = if shape == ShapeFunctions::QuadraticBspline { 0.035 } else { 0.01 };
-        assert!((settled / expected - 1.0).abs() < deeper, "{shape:?}: {settled} of {expected}");
-        let base = mpm.wall_forces()[0].y / (0.2 * cell * 1925.0 * 9.81);
-        assert!((base + 1.0).abs() < 1e-3, "{shape:?}: the base carries {base} of the weight");
-    }
+    alone(|| {
+        for shape in SHAPES {
+            let options = with(shape, Scheme::ModifiedStressLast);
+            let cell = 0.01;
+            let mut mpm =
+                Mpm2::new(Setup { walls: tube(DVec2::Y, cell), options, ..Setup::new(cell) }).unwrap();
+            let particles = Particle::<D2>::filling(DVec2::ZERO, DVec2::new(cell, 0.2), 0.25 * cell);
+            mpm.body(LinearElastic::new(1.98e6, 0.23).unwrap(), 1925.0, &particles).unwrap();
+            let mpm = loaded(mpm, 9.81, 2e-4, 4000);
+            let top = (0..particles.len())
+                .max_by(|&a, &b| particles[a].position.y.total_cmp(&particles[b].position.y));
+            let top = top.unwrap();
+            let material = particles[top].position.y;
+            let modulus = 2.29539e6;
+            let expected = 1925.0 * 9.81 / modulus * (0.2 * material - 0.5 * material * material);
+            let settled = material - mpm.particle(top as u32).position.y;
+            // Splines that reach behind a wall feel it half a cell deeper.
+            let deeper = if shape == ShapeFunctions::QuadraticBspline { 0.035 } else { 0.01 };
+            assert!((settled / expected - 1.0).abs() < deeper, "{shape:?}: {settled} of {expected}");
+            let base = mpm.wall_forces()[0].y / (0.2 * cell * 1925.0 * 9.81);
+            assert!((base + 1.0).abs() < 1e-3, "{shape:?}: the base carries {base} of the weight");
+        }
+    });
 }
 
 /// Share of its angular momentum that a disk loses in one turn.
@@ -161,7 +176,8 @@ fn lost_in_a_turn(shape: ShapeFunctions, cell: f64) -> f64 {
         .collect();
     mpm.body(LinearElastic::new(1e6, 0.3).unwrap(), 1000.0, &particles).unwrap();
     let start = mpm.angular_momentum();
-    mpm.advance(2.5e-4, 4000).unwrap();
+    let steps = (80.0 / cell).round();
+    mpm.advance(1.0 / steps, steps as u64).unwrap();
     let reach = mpm.particles().map(|(_, particle)| particle.position.length()).fold(0.0, f64::max);
     assert!((reach / 0.5 - 1.0).abs() < 0.02, "{shape:?}: {reach}");
     1.0 - mpm.angular_momentum() / start
@@ -170,47 +186,55 @@ fn lost_in_a_turn(shape: ShapeFunctions, cell: f64) -> f64 {
 /// What particles have of velocities that the nodes at the rim do not see turns less than they do, an error of the grid.
 #[test]
 fn a_turning_disk_loses_less_angular_momentum_in_smaller_cells() {
-    for shape in [ShapeFunctions::UniformGimp, ShapeFunctions::QuadraticBspline] {
-        let [coarse, fine] = [0.1, 0.05].map(|cell| lost_in_a_turn(shape, cell));
-        assert!(fine.abs() < 0.02 && fine.abs() < 0.4 * coarse.abs(), "{shape:?}: {coarse} {fine}");
-    }
+    alone(|| {
+        for shape in [ShapeFunctions::UniformGimp, ShapeFunctions::QuadraticBspline] {
+            let [coarse, fine] = [0.1, 0.05].map(|cell| lost_in_a_turn(shape, cell));
+            assert!(fine.abs() < 0.02 && fine.abs() < 0.4 * coarse.abs(), "{shape:?}: {coarse} {fine}");
+        }
+    });
 }
 
 /// \[Sulsky1994\]
 #[test]
 fn two_disks_meet_and_part() {
-    for shape in SHAPES {
-        let mut mpm =
-            Mpm2::new(Setup { options: with(shape, Scheme::ModifiedStressLast), ..Setup::new(0.05) })
-                .unwrap();
-        let law = LinearElastic::new(1000.0, 0.3).unwrap();
-        for (centre, velocity) in [(0.2, 0.1), (0.8, -0.1)] {
-            let centre = DVec2::splat(centre);
-            let reach = DVec2::splat(0.2);
-            let disk: Vec<_> = Particle::<D2>::filling_part(centre - reach, centre + reach, 0.0125, |at| {
-                (at - centre).length() < 0.2
-            })
-            .iter()
-            .map(|particle| particle.moving(DVec2::splat(velocity)))
-            .collect();
-            mpm.body(law, 1000.0, &disk).unwrap();
+    alone(|| {
+        for shape in SHAPES {
+            let mut mpm =
+                Mpm2::new(Setup { options: with(shape, Scheme::ModifiedStressLast), ..Setup::new(0.05) })
+                    .unwrap();
+            let law = LinearElastic::new(1000.0, 0.3).unwrap();
+            for (centre, velocity) in [(0.2, 0.1), (0.8, -0.1)] {
+                let centre = DVec2::splat(centre);
+                let reach = DVec2::splat(0.2);
+                let disk: Vec<_> =
+                    Particle::<D2>::filling_part(centre - reach, centre + reach, 0.0125, |at| {
+                        (at - centre).length() < 0.2
+                    })
+                    .iter()
+                    .map(|particle| particle.moving(DVec2::splat(velocity)))
+                    .collect();
+                mpm.body(law, 1000.0, &disk).unwrap();
+            }
+            let start = mpm.energies().translational();
+            assert!((start / 2.5133 - 1.0).abs() < 0.01, "{start}");
+            let mut least: f64 = start;
+            for _ in 0..70 {
+                mpm.advance(2e-3, 25).unwrap();
+                least = least.min(mpm.energies().translational());
+                assert!(mpm.momentum().length() < 1e-12, "{shape:?}");
+            }
+            // Stresses of a rate form store no exact energy at a tenth of strain: the balance is drawn when they have parted.
+            let kept = mpm.energies().mechanical() / start;
+            assert!((kept - 1.0).abs() < 0.02, "{shape:?}: {kept}");
+            // They have met, and fly apart again.
+            assert!(
+                least < 0.5 * start && mpm.energies().translational() > 0.8 * start,
+                "{shape:?}: {least}"
+            );
+            let first = mpm.particles().filter(|(id, _)| *id == 0).map(|(_, p)| p.velocity.x).sum::<f64>();
+            assert!(first < 0.0, "{shape:?}");
         }
-        let start = mpm.energies().translational();
-        assert!((start / 2.5133 - 1.0).abs() < 0.01, "{start}");
-        let mut least: f64 = start;
-        for _ in 0..70 {
-            mpm.advance(1e-3, 50).unwrap();
-            least = least.min(mpm.energies().translational());
-            assert!(mpm.momentum().length() < 1e-12, "{shape:?}");
-        }
-        // Stresses of a rate form store no exact energy at a tenth of strain: the balance is drawn when they have parted.
-        let kept = mpm.energies().mechanical() / start;
-        assert!((kept - 1.0).abs() < 0.02, "{shape:?}: {kept}");
-        // They have met, and fly apart again.
-        assert!(least < 0.5 * start && mpm.energies().translational() > 0.8 * start, "{shape:?}: {least}");
-        let first = mpm.particles().filter(|(id, _)| *id == 0).map(|(_, p)| p.velocity.x).sum::<f64>();
-        assert!(first < 0.0, "{shape:?}");
-    }
+    });
 }
 
 /// Particles that carry one stress everywhere push nodes inside nowhere, wherever they are in their cells; linear shape
@@ -267,16 +291,18 @@ fn slides(degrees: f64, friction: f64, is_damped: bool, shape: ShapeFunctions) -
 
 #[test]
 fn a_block_slides_or_sticks_on_an_incline() {
-    for shape in SHAPES {
-        for (degrees, friction, acceleration) in [(30.0, 0.466, 0.94600), (45.0, 0.1, 6.2430)] {
-            let [whole, level] =
-                slides(degrees, friction, false, shape).map(|found| found / acceleration - 1.0);
-            // It hops a little: while it rises the floor carries more than its weight. With other shape functions than blocks
-            // part of its base also sticks now and then.
-            let allowed = if shape == ShapeFunctions::UniformGimp { 0.01 } else { 0.02 };
-            assert!(level.abs() < allowed && whole.abs() < 0.05, "{shape:?} {degrees}: {whole} {level}");
+    alone(|| {
+        for shape in SHAPES {
+            for (degrees, friction, acceleration) in [(30.0, 0.466, 0.94600), (45.0, 0.1, 6.2430)] {
+                let [whole, level] =
+                    slides(degrees, friction, false, shape).map(|found| found / acceleration - 1.0);
+                // It hops a little: while it rises the floor carries more than its weight. With other shape functions than blocks
+                // part of its base also sticks now and then.
+                let allowed = if shape == ShapeFunctions::UniformGimp { 0.01 } else { 0.02 };
+                assert!(level.abs() < allowed && whole.abs() < 0.05, "{shape:?} {degrees}: {whole} {level}");
+            }
+            let creep = slides(24.0, 0.466, true, shape)[0] / (9.81 * 24.0_f64.to_radians().sin());
+            assert!(creep.abs() < 1e-3, "{shape:?}: {creep}");
         }
-        let creep = slides(24.0, 0.466, true, shape)[0] / (9.81 * 24.0_f64.to_radians().sin());
-        assert!(creep.abs() < 1e-3, "{shape:?}: {creep}");
-    }
+    });
 }

@@ -9,7 +9,10 @@ use granular_core::testing::CountingAllocator;
 static ALLOCATOR: CountingAllocator = CountingAllocator::new();
 
 mod balance;
+mod boundaries;
 mod closed_forms;
+mod contacts;
 mod contract;
+mod pushes;
 mod robust;
 mod sample;

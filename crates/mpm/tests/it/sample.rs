@@ -53,3 +53,8 @@ fn falling_of<D: Dim>(law: impl Into<BodyLaw<D>>, options: Options, side: f64) -
     mpm.body(law, 1000.0, &particles).unwrap();
     mpm
 }
+
+/// Runs a test on one thread, without the price of sharing out a few particles; bits are the same.
+pub(crate) fn alone(test: impl FnOnce() + Send) {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(test);
+}

@@ -3,7 +3,7 @@
 use super::boundaries;
 use super::materials::{NamedMaterials, inlet_materials};
 use super::member::Grains;
-use super::{cell, push, sample, stages, stiffness, whole};
+use super::{cell, sample, stages, stiffness, whole};
 use crate::methods::contract::Building;
 use crate::methods::member::Member;
 use crate::problems::{Problems, nearest};
@@ -73,7 +73,6 @@ pub(super) fn build<D: Dim>(
     let stages = stages::actions::<D>((scene, name), &openings, &materials, problems);
     check_wall_names(scene, &walls, problems);
     check_spec(name, spec, problems);
-    push::check_figures(scene, problems);
     let (Some(gravity), Some(sample), true) = (gravity, sample, problems.0.len() == before) else {
         return None;
     };

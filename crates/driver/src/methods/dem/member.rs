@@ -4,7 +4,7 @@ use super::falling::{self, Region};
 use super::grid::Grid;
 use super::sample_file::SavedSample;
 use super::stages::{self, Action};
-use super::{boundaries, probes, push, voronoi};
+use super::{boundaries, probes, voronoi};
 use crate::column::ColumnSize;
 use crate::failure::Failure;
 use crate::methods::contract::{Building, Claims};
@@ -83,7 +83,7 @@ impl<D: Dim> Member for Grains<D> {
 
     fn announced(&self, simulation: &Simulation, stage: usize) -> Vec<String> {
         let pushes = self.stages[stage].iter().filter_map(|action| match action {
-            Action::Push(push) => Some(push::described(push, self.dem(simulation))),
+            Action::Push(push) => Some(push.described(stages::target(self.dem(simulation)))),
             _ => None,
         });
         pushes.collect()

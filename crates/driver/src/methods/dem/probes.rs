@@ -1,8 +1,8 @@
 //! Numbers that the driver works out from what a solver lends, beside those that the solver shows itself.
 
+use crate::methods::fronts::{self, Piece};
 use crate::methods::member::Number;
-use core::f64::consts::TAU;
-use granular_core::{Dim, FieldSink, GrainMotion, Provides, Shown, ShownAs, Solver, Vector};
+use granular_core::{Dim, FieldSink, GrainMotion, Provides, Shown, ShownAs, Solver};
 use granular_dem::Dem;
 use granular_packing::{Bulk, median_diameter};
 
@@ -20,22 +20,12 @@ const PROBES: [Number; 3] = [
     ),
     Number("median_diameter", "m", "median diameter of the grains by area or volume"),
 ];
-/// Of grains in space.
-const IN_SPACE: Number = Number(
-    RADIAL_FRONT,
-    "m",
-    "distance of the front of the main mass from the z axis: mean over sectors of 10 degrees; in space",
-);
-
 const SOLID_FRACTION: &str = "solid_fraction";
-const RADIAL_FRONT: &str = "radial_front";
-/// Sectors about the z axis.
-const SECTORS: usize = 36;
 
 /// All that the solver shows, and these numbers. A periodic cell has a solid fraction of its own.
 pub(super) fn shown<D: Dim>(dem: &Dem<D>) -> Vec<Shown> {
     let mut list = dem.shown();
-    let probes = PROBES.into_iter().chain((D::N == 3).then_some(IN_SPACE));
+    let probes = PROBES.iter().chain(fronts::numbers::<D>()).copied();
     let new: Vec<Number> = probes.filter(|Number(name, ..)| !shows(&list, name)).collect();
     list.extend(new.into_iter().map(|number| number.shown(ShownAs::Number)));
     list
@@ -51,9 +41,7 @@ pub(super) fn show<D: Dim>(dem: &Dem<D>, sink: &mut dyn FieldSink) {
     if PROBES.iter().any(|Number(name, ..)| sink.wants(name)) {
         of_grains(dem, sink);
     }
-    if D::N == 3 && sink.wants(RADIAL_FRONT) {
-        sink.number(RADIAL_FRONT, "m", radial_front(dem));
-    }
+    fronts::show(|| pieces(dem), sink);
 }
 
 fn of_grains<D: Dim>(dem: &Dem<D>, sink: &mut dyn FieldSink) {
@@ -78,16 +66,15 @@ fn of_grains<D: Dim>(dem: &Dem<D>, sink: &mut dyn FieldSink) {
     }
 }
 
-/// Mean over the sectors that hold grains of the main mass of its farthest point in them \[m\].
-fn radial_front<D: Dim>(dem: &Dem<D>) -> f64 {
+/// Grains as fronts see them.
+fn pieces<D: Dim>(dem: &Dem<D>) -> Vec<Piece<D>> {
     let grains = Provides::<GrainMotion<D>>::view(dem);
-    let mut farthest = [0.0_f64; SECTORS];
-    for (i, _) in dem.main_mass().into_iter().enumerate().filter(|(_, main)| *main) {
-        let [x, y, _] = grains.motion(i).position.padded();
-        let turn = y.atan2(x) / TAU + 0.5;
-        let sector = &mut farthest[((turn * SECTORS as f64) as usize).min(SECTORS - 1)];
-        *sector = sector.max(x.hypot(y) + grains.radius(i));
-    }
-    let met = farthest.iter().filter(|reach| **reach > 0.0);
-    met.clone().sum::<f64>() / met.count() as f64
+    let (main, masses) = (dem.main_mass(), dem.masses());
+    let piece = |i: usize| Piece {
+        position: grains.motion(i).position,
+        reach: grains.radius(i),
+        mass: masses[i],
+        is_main: main[i],
+    };
+    (0..grains.len()).map(piece).collect()
 }

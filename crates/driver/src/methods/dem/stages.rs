@@ -2,12 +2,12 @@
 
 use super::cell;
 use super::materials::NamedMaterials;
-use super::push::{self, PushAction};
+use crate::methods::push::{self, Given, PushAction, Pushable, Target};
 use crate::problems::Problems;
 use crate::records::PushRecord;
 use crate::scene::{Change, Scene, Stage};
-use granular_core::Dim;
 use granular_core::units::Acceleration;
+use granular_core::{Dim, Linear};
 use granular_dem::{CellControl, Dem, MaterialId, Shaking};
 
 /// A change of the grains or walls at the start of a stage.
@@ -59,7 +59,8 @@ pub(super) fn actions<D: Dim>(
             list.extend(match change {
                 Change::Push { of: Some(of), .. } if of != name => None,
                 Change::Push { .. } => {
-                    let push = push::action::<D>(&path, change, (falls, scene.cell.is_some()), problems);
+                    let pushable = Pushable { falls, in_cell: scene.cell.is_some(), knows_grains: true };
+                    let push = push::action::<D>(&path, change, pushable, problems);
                     push.map(Action::Push)
                 }
                 Change::Shake { .. } if scene.cell.is_some() => {
@@ -122,7 +123,12 @@ fn action<D: Dim>(
 
 pub(super) fn apply<D: Dim>(action: &Action<D>, dem: &mut Dem<D>, pushed: &mut Option<PushRecord>) {
     match action {
-        Action::Push(action) => *pushed = Some(push::apply(action, dem, *pushed)),
+        Action::Push(action) => {
+            let before = target(dem);
+            let given = dem.apply_push(&action.push(before, true)).expect("the values were checked at build");
+            let given = Given { energy: given.energy, momentum: given.momentum, speed: given.speed };
+            *pushed = Some(PushRecord::of(target(dem), given, *pushed));
+        }
         Action::Friction(material, value) => dem.set_friction(*material, *value),
         Action::Gravity(gravity) => dem.set_gravity(*gravity),
         Action::StopMotion => dem.stop_motion(),
@@ -133,5 +139,15 @@ pub(super) fn apply<D: Dim>(action: &Action<D>, dem: &mut Dem<D>, pushed: &mut O
             dem.set_inlet(name, *runs);
         }
         Action::Cell(control) => dem.control_cell(*control).expect("the control was checked at build"),
+    }
+}
+
+/// The grains as pushes see them.
+pub(super) fn target<D: Dim>(dem: &Dem<D>) -> Target {
+    Target {
+        mass: dem.mass(),
+        gravity: dem.gravity().length(),
+        diameter: dem.mean_diameter(),
+        potential: dem.energies().potential,
     }
 }

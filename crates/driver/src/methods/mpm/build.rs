@@ -1,6 +1,6 @@
 //! From a scene to bodies and walls.
 
-use super::member::Continuum;
+use super::member::{Continuum, Made};
 use super::sample::{self, BuiltSample};
 use super::{materials, stages};
 use crate::methods::contract::Building;
@@ -9,8 +9,8 @@ use crate::problems::{Problems, nearest};
 use crate::scene::{FigureSpec, Sample, Scene, Writer};
 use crate::walls::{self, Beside, BuiltWall, Surroundings};
 use granular_core::{Dim, Linear, Vector, WallMotion};
-use granular_mpm::spec::{ConditionSpec, MpmSpec};
-use granular_mpm::{Condition, Mpm, Setup, Wall};
+use granular_mpm::spec::{BodyContactSpec, ConditionSpec, MpmSpec};
+use granular_mpm::{Condition, Contact, Mpm, Setup, Wall};
 use std::sync::Arc;
 
 /// Adds the continuum of a scene to the simulation.
@@ -28,9 +28,13 @@ pub(super) fn build<D: Dim>(
         problems.vector::<D, _>("gravity", &scene.gravity)
     };
     let sample = sample::bodies::<D>(scene, name, spec, problems);
+    if let Some(sample) = &sample {
+        check_contacts(name, spec, sample, problems);
+    }
     let (walls, openings) = boundaries::<D>(scene, name, spec, sample.as_ref(), problems);
     let names: Vec<&str> = walls.iter().map(|wall| wall.name.as_str()).collect();
-    let stages = stages::actions::<D>(scene, &openings, &names, problems);
+    let grains = materials::grains::<D>(scene);
+    let stages = stages::actions::<D>((scene, name), &openings, &names, (grains.is_some(), problems));
     if let Some(step) = spec.time_step.filter(|step| step.value() <= 0.0) {
         problems.add(format!("solvers.{name}.time_step"), step, "a positive time", "");
     }
@@ -48,10 +52,47 @@ pub(super) fn build<D: Dim>(
         problems.add(format!("solvers.{name}"), format!("refused: {error}"), error.allowed, "");
     };
     let mut mpm = Mpm::<D>::new(setup).map_err(&mut refused).ok()?;
+    let mut bodies = Vec::new();
     for body in &sample.bodies {
-        mpm.body(body.law, body.density, &body.particles).map_err(&mut refused).ok()?;
+        bodies.push(mpm.body(body.law, body.density, &body.particles).map_err(&mut refused).ok()?);
     }
-    Continuum::add(name, mpm, (stages, sample.column, spec.time_step), simulation, problems)
+    for (one, other, contact) in in_contact(spec, &sample) {
+        mpm.contact(bodies[one], bodies[other], contact).map_err(&mut refused).ok()?;
+    }
+    let made = Made { stages, column: sample.column, time_step: spec.time_step, grains };
+    Continuum::add(name, mpm, made, simulation, problems)
+}
+
+/// Blames contacts of continua that no body is of, and such as are between nothing.
+fn check_contacts<D: Dim>(name: &str, spec: &MpmSpec, sample: &BuiltSample<D>, problems: &mut Problems) {
+    let known: Vec<&str> = sample.bodies.iter().map(|body| body.material.as_str()).collect();
+    for (k, BodyContactSpec { between: (one, other), .. }) in spec.contacts.iter().enumerate() {
+        let path = format!("solvers.{name}.contacts.{k}.between");
+        for unknown in [one, other].into_iter().filter(|named| !known.contains(&named.as_str())) {
+            let hint = nearest(unknown, known.iter().copied());
+            problems.add(&path, format!("`{unknown}`, of which there is no body"), known.join(", "), hint);
+        }
+        if one == other && known.iter().filter(|named| *named == one).count() == 1 {
+            let hint = "a body is in contact with others only";
+            problems.add(&path, format!("`{one}` twice"), "two bodies or more of it, or two continua", hint);
+        }
+    }
+}
+
+/// Pairs of bodies that are in contact, by their numbers; of contacts that fit one pair the last one counts.
+fn in_contact<D: Dim>(spec: &MpmSpec, sample: &BuiltSample<D>) -> Vec<(usize, usize, Contact)> {
+    let count = sample.bodies.len();
+    let pairs = (0..count).flat_map(|one| (one + 1..count).map(move |other| (one, other)));
+    let contact = |(one, other): (usize, usize)| {
+        let [first, second] = [one, other].map(|body| &sample.bodies[body].material);
+        let fits = |contact: &&BodyContactSpec| {
+            let (a, b) = &contact.between;
+            (a, b) == (first, second) || (a, b) == (second, first)
+        };
+        let found = spec.contacts.iter().rev().find(fits)?;
+        Some((one, other, Contact { friction: found.friction }))
+    };
+    pairs.filter_map(contact).collect()
 }
 
 /// Walls of a continuum, and which opens at which stage.
@@ -103,6 +144,10 @@ fn of_continuum<D: Dim>(
         None => Condition::frictional(materials::friction(scene, &material)),
         Some(ConditionSpec::Fixed) => Condition::Fixed,
         Some(ConditionSpec::Slip) => Condition::Slip,
+        Some(ConditionSpec::Absorbing { compression_speed, shear_speed }) => Condition::Absorbing {
+            compression_speed: compression_speed.value(),
+            shear_speed: shear_speed.value(),
+        },
         Some(ConditionSpec::Frictional { friction, static_friction }) => Condition::Frictional {
             friction: *friction,
             static_friction: static_friction.unwrap_or(*friction),

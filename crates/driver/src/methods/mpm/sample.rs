@@ -18,6 +18,8 @@ const MOST_DRAWN: usize = 1_000_000;
 
 /// A body before it is in a solver.
 pub(super) struct BuiltBody<D: Dim> {
+    /// Name of the continuum.
+    pub(super) material: String,
     pub(super) law: AnyLaw,
     /// Density at the start \[kg/m^3\].
     pub(super) density: f64,
@@ -61,7 +63,10 @@ pub(super) fn bodies<D: Dim>(
             let (law, density) = continuum?;
             check_cell(name, spec, size.width.min(size.height), problems)?;
             let particles = column::<D>(size, edge, problems)?;
-            Some(BuiltSample { bodies: vec![BuiltBody { law, density, particles }], column: Some(size) })
+            Some(BuiltSample {
+                bodies: vec![BuiltBody { material: material.clone(), law, density, particles }],
+                column: Some(size),
+            })
         }
         Some(Sample::Bodies(list)) => {
             if list.is_empty() {
@@ -140,8 +145,9 @@ fn continuum<D: Dim>(
             return None;
         }
     };
-    let law = materials::law(spec, density, &format!("{place}.law"), problems);
-    Some((law?, density))
+    let files = (&*scene.folder, Some(scene.dimension));
+    let law = spec.law(files, &format!("{place}."), problems)?;
+    Some((materials::law(&law, density, &format!("{place}.law"), problems)?, density))
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
@@ -242,7 +248,7 @@ fn one<D: Dim>(
         return None;
     }
     let particles = particles.into_iter().map(|particle| particle.moving(velocity)).collect();
-    Some(BuiltBody { law, density, particles })
+    Some(BuiltBody { material: spec.material.clone(), law, density, particles })
 }
 
 /// Stress at rest: the weight of what is above the same place, and that times a ratio to the sides.

@@ -56,7 +56,7 @@ fn a_column_is_filled_as_it_is_described() {
 fn what_cannot_be_is_refused_where_it_stands() {
     let law = "continua.sand.law=MohrCoulomb(young_modulus: 1e6, poisson_ratio: NU, friction_angle: \"PHI\", dilation_angle: \"PSI\")";
     let of = |nu: &str, phi: &str, psi: &str| law.replace("NU", nu).replace("PHI", phi).replace("PSI", psi);
-    let cases: [(&[&str], &[&str]); 10] = [
+    let cases: [(&[&str], &[&str]); 12] = [
         (&[&of("0.5", "30 deg", "0 deg")], &["continua.sand.law", "Poisson's ratio is 0.5", "0.5"]),
         (&[&of("0.3", "90 deg", "0 deg")], &["continua.sand.law", "angle of friction", "less than 90"]),
         (&[&of("0.3", "20 deg", "25 deg")], &["continua.sand.law", "dilation", "angle of friction"]),
@@ -66,6 +66,14 @@ fn what_cannot_be_is_refused_where_it_stands() {
         (&["solvers.soil.cell=\"0.15 m\""], &["solvers.soil.cell", "smaller than the sample"]),
         (&["solvers.soil.walls={ \"flor\": Slip }"], &["solvers.soil.walls", "`flor`", "floor"]),
         (&["walls.0=Floor(material: \"smooth\")"], &["walls.0.material", "`smooth`", "rough"]),
+        (
+            &["solvers.soil.contacts=[(between: (\"sand\", \"rock\"), friction: 0.1)]"],
+            &["solvers.soil.contacts.0.between", "`rock`", "sand"],
+        ),
+        (
+            &["solvers.soil.contacts=[(between: (\"sand\", \"sand\"), friction: 0.1)]"],
+            &["solvers.soil.contacts.0.between", "twice", "two bodies"],
+        ),
         (&["solvers.soil.courant=1.5"], &["solvers.soil", "Courant"]),
     ];
     for (edits, told) in cases {
@@ -98,4 +106,42 @@ fn bodies_that_touch_share_no_particle_and_miss_none() {
     assert_eq!(count, 80 * 80);
     let momentum = model.number("momentum_x").unwrap();
     assert!((momentum / (1600.0 * 0.02) - 1.0).abs() < 0.02, "{momentum}");
+}
+
+#[test]
+fn a_push_gives_its_energy_and_needs_to_know_grains_for_units_of_theirs() {
+    let push = |text: &str| format!("stages.0.changes=[Push({text})]");
+    let (_, mut model) = check::read(&scene(&[&push("energy: 3, profile: Gradient")])).unwrap();
+    let member = model.members[0].clone();
+    assert!(member.announced(&model.simulation, 0)[0].contains("3.0000 J in all"));
+    let pushed = member.begin(&mut model.simulation, 0).push.unwrap();
+    assert!((pushed.energy - 3.0).abs() < 1e-12);
+    assert!((model.number("kinetic_energy").unwrap() - 3.0).abs() < 1e-12);
+    assert!((model.number("momentum_x").unwrap() - pushed.momentum).abs() < 1e-12 * pushed.momentum);
+    let found = problems(&[&push("energy_per_grain: 8")]);
+    for words in ["stages.0.changes.0.energy_per_grain", "nobody names", "grading"] {
+        assert!(found.contains(words), "{words}: {found}");
+    }
+    // Of 1 mm and 2600 kg/m^3 the unit is the weight of all times 1 mm.
+    let grains =
+        ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    let (_, mut model) = check::read(&scene(&[&push("energy_per_grain: 8"), grains[0], grains[1]])).unwrap();
+    let pushed = model.members[0].clone().begin(&mut model.simulation, 0).push.unwrap();
+    assert!((pushed.energy / (8.0 * 32.0 * 9.81 * 1e-3) - 1.0).abs() < 1e-12, "{}", pushed.energy);
+}
+
+#[test]
+fn grids_show_the_solid_fraction_only_of_known_grains() {
+    let output = |field: &str| {
+        format!(
+            "outputs.0=(every: Time(\"1 ms\"), write: Fields(path: \"means\", fields: [\"{field}\"],
+                grid: (from: [0, 0], to: [\"0.1 m\", \"0.2 m\"], spacing: \"10 mm\")))"
+        )
+    };
+    assert_eq!(problems(&[&output("inertial_number")]).matches("`inertial_number`").count(), 1);
+    assert_eq!(problems(&[&output("shear_rate")]), "[]");
+    let grains =
+        ["sample.grading=Single(\"1 mm\")", "materials.sand=(density: \"2600 kg/m^3\", friction: 0.5)"];
+    assert_eq!(problems(&[&output("inertial_number"), grains[0], grains[1]]), "[]");
+    assert!(problems(&[&output("coordination"), grains[0], grains[1]]).contains("`coordination`"));
 }

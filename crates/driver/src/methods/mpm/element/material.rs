@@ -2,12 +2,13 @@
 
 use super::{Element, Plan};
 use crate::failure::Failure;
+use crate::methods::mpm::ContinuumSpec;
 use crate::methods::mpm::materials::law;
 use crate::problems::{Problems, nearest, quoted};
 use crate::scene::Scene;
 use crate::scene_file::{SceneProblem, SceneText};
 use granular_constitutive::AnyLaw;
-use granular_constitutive::spec::{ConstitutiveLawSpec, ContinuumSpec};
+use granular_constitutive::spec::ConstitutiveLawSpec;
 use std::path::Path;
 
 /// A material as a continuum, under the name that a scene or a file gives it.
@@ -71,8 +72,14 @@ impl Material {
     fn of_spec(name: &str, spec: &ContinuumSpec, place: &str, text: &SceneText) -> Result<Self, Failure> {
         let mut problems = Problems::default();
         let given = spec.density.map(|density| density.value());
-        let is_fluid =
-            matches!(spec.law, ConstitutiveLawSpec::Newtonian { .. } | ConstitutiveLawSpec::Bingham { .. });
+        let folder = Path::new(text.name()).parent().unwrap_or(Path::new(""));
+        let Some(spec_of_law) = spec.law((folder, None), place, &mut problems) else {
+            return Err(Failure::Scene(SceneProblem::all_located_in(problems.0, text)));
+        };
+        let is_fluid = matches!(
+            spec_of_law,
+            ConstitutiveLawSpec::Newtonian { .. } | ConstitutiveLawSpec::Bingham { .. }
+        );
         let density = match given {
             // Any will do: it is not used.
             None if !is_fluid => Some(1.0),
@@ -84,7 +91,8 @@ impl Material {
                 None
             }
         };
-        let law = density.and_then(|density| law(spec, density, &format!("{place}law"), &mut problems));
+        let law =
+            density.and_then(|density| law(&spec_of_law, density, &format!("{place}law"), &mut problems));
         law.map(|law| Self { name: name.to_owned(), law })
             .ok_or_else(|| Failure::Scene(SceneProblem::all_located_in(problems.0, text)))
     }

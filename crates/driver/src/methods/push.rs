@@ -1,15 +1,15 @@
-//! Pushes: grains that get a velocity at the start of a stage.
+//! Pushes: grains or a continuum that get a velocity at the start of a stage.
 
 use crate::problems::{Problems, nearest};
 use crate::records::PushRecord;
 use crate::scene::push::PushProfileSpec;
 use crate::scene::{Change, FigureSpec, Scene};
+use granular_core::push::{Push, PushProfile, Strength};
 use granular_core::{Dim, Linear, Vector};
-use granular_dem::{Dem, Push, PushProfile, Pushed, Strength};
 
 /// A push, as the scene asks for it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct PushAction {
+pub(crate) struct PushAction {
     /// Where to, one number per axis.
     direction: Vec<f64>,
     /// How strong.
@@ -18,11 +18,46 @@ pub(super) struct PushAction {
     profile: PushProfile,
 }
 
-/// The push that a change asks for. `falls` when grains have a weight at that stage.
-pub(super) fn action<D: Dim>(
+/// What is pushed, as far as records and reports need it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Target {
+    /// Mass \[kg; kg/m in the plane\].
+    pub(crate) mass: f64,
+    /// Magnitude of gravity \[m/s^2\].
+    pub(crate) gravity: f64,
+    /// Mean diameter of its grains \[m\]; the edge of a cell for a continuum whose grains nobody names.
+    pub(crate) diameter: f64,
+    /// Potential energy \[J\].
+    pub(crate) potential: f64,
+}
+
+/// What a push gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Given {
+    /// Kinetic energy \[J; J/m in the plane\].
+    pub(crate) energy: f64,
+    /// Momentum along the direction \[kg m/s; kg/s in the plane\].
+    pub(crate) momentum: f64,
+    /// Velocity of what it moves fastest \[m/s\].
+    pub(crate) speed: f64,
+}
+
+/// What is there to be pushed at a stage.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pushable {
+    /// It has a weight.
+    pub(crate) falls: bool,
+    /// It is in a periodic cell.
+    pub(crate) in_cell: bool,
+    /// Its grains have a diameter.
+    pub(crate) knows_grains: bool,
+}
+
+/// The push that a change asks for.
+pub(crate) fn action<D: Dim>(
     path: &str,
     change: &Change,
-    (falls, in_cell): (bool, bool),
+    Pushable { falls, in_cell, knows_grains }: Pushable,
     problems: &mut Problems,
 ) -> Option<PushAction> {
     let Change::Push { direction, speed, energy, energy_per_grain, profile, .. } = change else {
@@ -54,6 +89,11 @@ pub(super) fn action<D: Dim>(
         Strength::Energy(energy) => negative("energy", energy, problems),
         Strength::EnergyPerGrain(energy) => {
             negative("energy_per_grain", energy, problems);
+            if !knows_grains {
+                let hint = "or give the sample a grading, and its material the density of the grains";
+                let value = "given, of grains that nobody names";
+                problems.add(format!("{path}.energy_per_grain"), value, "`energy` or `speed`", hint);
+            }
             if !falls {
                 let hint = "without gravity state `energy` or `speed`";
                 problems.add(
@@ -77,7 +117,7 @@ pub(super) fn action<D: Dim>(
 }
 
 /// Checks that figures of an impact are of stages that push.
-pub(super) fn check_figures(scene: &Scene, problems: &mut Problems) {
+pub(crate) fn check_figures(scene: &Scene, problems: &mut Problems) {
     let pushes = |change: &Change| matches!(change, Change::Push { .. });
     let pushing = scene.stages.iter().filter(|stage| stage.changes.iter().any(pushes));
     let known: Vec<&str> = pushing.map(|stage| stage.name.as_str()).collect();
@@ -103,36 +143,39 @@ pub(super) fn check_figures(scene: &Scene, problems: &mut Problems) {
     }
 }
 
-/// Pushes the grains of a solver; returns what this and the pushes `before` at the same stage did.
-pub(super) fn apply<D: Dim>(action: &PushAction, dem: &mut Dem<D>, before: Option<PushRecord>) -> PushRecord {
-    let direction = D::Vec::from_slice(&action.direction).expect("axes were counted at build");
-    let push = Push { direction, strength: action.strength, profile: action.profile };
-    let pushed = dem.apply_push(&push).expect("the values were checked at build");
-    record(dem, pushed, before)
-}
-
-/// What a push of the grains of a solver did, and those before it.
-fn record<D: Dim>(dem: &Dem<D>, pushed: Pushed, before: Option<PushRecord>) -> PushRecord {
-    let earlier = before.map_or([0.0; 3], |before| [before.energy, before.momentum, before.speed]);
-    PushRecord {
-        energy: earlier[0] + pushed.energy,
-        momentum: earlier[1] + pushed.momentum,
-        speed: earlier[2] + pushed.speed,
-        diameter: dem.mean_diameter(),
-        mass: dem.mass(),
-        gravity: dem.gravity().length(),
-        potential: dem.energies().potential,
+impl PushRecord {
+    /// Of a push and the pushes `before` at the same stage.
+    pub(crate) fn of(target: Target, given: Given, before: Option<Self>) -> Self {
+        let earlier = before.map_or([0.0; 3], |before| [before.energy, before.momentum, before.speed]);
+        let Target { mass, gravity, diameter, potential } = target;
+        Self {
+            energy: earlier[0] + given.energy,
+            momentum: earlier[1] + given.momentum,
+            speed: earlier[2] + given.speed,
+            diameter,
+            mass,
+            gravity,
+            potential,
+        }
     }
 }
 
-/// What a push will do to the grains of a solver as far as it is known before, as a line of a report.
-pub(super) fn described<D: Dim>(action: &PushAction, dem: &Dem<D>) -> String {
-    action.text((dem.mass(), dem.gravity().length() * dem.mean_diameter()))
-}
-
 impl PushAction {
-    /// For grains of this mass and gravity times mean diameter.
-    fn text(&self, (mass, scale): (f64, f64)) -> String {
+    /// As the solver takes it. An energy per grain is handed on, or made one of all where the solver has no grains.
+    pub(crate) fn push<D: Dim>(&self, target: Target, has_grains: bool) -> Push<D> {
+        let direction = D::Vec::from_slice(&self.direction).expect("axes were counted at build");
+        let strength = match self.strength {
+            Strength::EnergyPerGrain(units) if !has_grains => {
+                Strength::Energy(units * target.mass * target.gravity * target.diameter)
+            }
+            strength => strength,
+        };
+        Push { direction, strength, profile: self.profile }
+    }
+
+    /// What it will do as far as it is known before, as a line of a report.
+    pub(crate) fn described(&self, target: Target) -> String {
+        let (mass, scale) = (target.mass, target.gravity * target.diameter);
         let of_energy = |energy: f64| {
             let [unit, speed] = [energy / (mass * scale), (2.0 * energy / mass).sqrt()];
             format!(
@@ -149,8 +192,8 @@ impl PushAction {
             (Strength::EnergyPerGrain(units), _) => of_energy(units * mass * scale),
         };
         let spread = match self.profile {
-            PushProfile::Uniform => "all grains alike",
-            PushProfile::Gradient => "most for the lowest grain, nothing for the highest",
+            PushProfile::Uniform => "everything alike",
+            PushProfile::Gradient => "most at the bottom, nothing at the top",
         };
         format!("a push along {:?}: {strength}; {spread}", self.direction)
     }
