@@ -313,3 +313,36 @@ impl<D: Dim> Meeting<'_, D> {
         now
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use granular_core::D2;
+    use granular_core::glam::DVec2;
+
+    /// Dashpots on the mean velocity over the step: `(v' - v) h = -c dt (v' + v)`, for each kind of wave its own, beside a wall that moves.
+    #[test]
+    fn absorbing_walls_slow_both_kinds_of_waves() {
+        let absorbing = Condition::Absorbing { compression_speed: 3.0, shear_speed: 1.0 };
+        let wall = Wall::<D2>::plane("wall", DVec2::ZERO, DVec2::X, absorbing).unwrap();
+        let mut touch = Touch::<D2> {
+            node: 0,
+            wall: 0,
+            normal: DVec2::X,
+            both_sides: false,
+            velocity: DVec2::new(0.5, 0.0),
+            impulses: [DVec2::ZERO; 3],
+            lost: [0.0; 3],
+            press: 0.0,
+            is_pressed: false,
+            sticks: false,
+        };
+        let touches = std::slice::from_mut(&mut touch);
+        let mut meeting = Meeting { touches, walls: &[wall], mass: 2.0, dt_per_cell: 0.1 };
+        let (before, after) = meeting.act(DVec2::new(1.5, 1.0), DVec2::ZERO);
+        assert_eq!(before, DVec2::new(1.5, 1.0));
+        assert!((after - DVec2::new(0.5 + 0.7 / 1.3, 0.9 / 1.1)).length() < 1e-15, "{after}");
+        assert!((touch.impulse() - (after - before) * 2.0).length() < 1e-15);
+        assert!(touch.lost[2] > 0.0 && touch.lost[..2] == [0.0; 2]);
+    }
+}
