@@ -36,7 +36,7 @@ fn a_push_is_announced_given_and_measured() {
         "impact  ",
         "begins with a push along [1.0, 0.0]",
         "12.0000 m g d per grain",
-        "nothing for the highest",
+        "nothing at the top",
     ] {
         assert!(check.out.contains(part), "`{part}` is not in:\n{}", check.out);
     }
