@@ -32,12 +32,9 @@ fn with_scene(name: &str) -> Scratch {
 fn a_push_is_announced_given_and_measured() {
     let scratch = with_scene("push");
     let check = scratch.granular(&["check", "push.ron"]).expect(0);
-    for part in [
-        "impact  ",
-        "begins with a push along [1.0, 0.0]",
-        "12.0000 m g d per grain",
-        "nothing at the top",
-    ] {
+    for part in
+        ["impact  ", "begins with a push along [1.0, 0.0]", "12.0000 m g d per grain", "nothing at the top"]
+    {
         assert!(check.out.contains(part), "`{part}` is not in:\n{}", check.out);
     }
     let json = scratch.granular(&["check", "push.ron", "--json"]).expect(0).json();
