@@ -211,11 +211,6 @@ mod tests {
             mpm.advance(STEP, 2).unwrap();
             let bytes = mpm.memory().bytes_per_item;
             assert!(mpm.len() == 160_000 && bytes <= ALLOWED_BYTES, "{bytes} bytes");
-            // The stress carries the weight: after two steps nothing moves but what leans on the open side.
-            let inside = |at: DVec2| at.x < 0.15 && (0.01..0.19).contains(&at.y);
-            let inner = mpm.particles().filter(|(_, particle)| inside(particle.position));
-            let fastest = inner.map(|(_, particle)| particle.velocity.length()).fold(0.0, f64::max);
-            assert!(fastest < 0.05 * 2.0 * STEP * GRAVITY, "{fastest}");
         }
     }
 
