@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bar_is_of_second_order_and_a_column_of_first_at_least() {
+    fn a_bar_of_few_cells_is_of_second_order_and_a_column_of_first_at_least() {
         for (measure, least) in
             [(bar::measure as fn(&Run) -> Result<Measured, Failure>, 1.5), (column::measure, 0.8)]
         {
