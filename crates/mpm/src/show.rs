@@ -2,8 +2,10 @@
 
 use crate::batch::{BATCH, Batch};
 use crate::layout::{Node, block_cells};
+use crate::ledger::Energies;
 use crate::mpm::Mpm;
 use granular_core::{Blocks, Dim, FieldRef, FieldSink, Linear, Shown, ShownAs, SymmetricTensor, Vector};
+use std::cell::OnceCell;
 
 type Entry = (&'static str, &'static str, &'static str);
 
@@ -110,9 +112,13 @@ impl<D: Dim> Mpm<D> {
     }
 
     fn show_numbers(&self, sink: &mut dyn FieldSink) {
+        // Several numbers come of one pass over the particles each.
+        let (energies, main_mass) = (OnceCell::new(), OnceCell::new());
+        let energies = || *energies.get_or_init(|| self.energies());
+        let main_mass = || *main_mass.get_or_init(|| self.front_and_height());
         for (name, unit, _) in NUMBERS {
             if sink.wants(name) && (D::N == 3 || name != "kinetic_energy_z") {
-                sink.number(name, unit, self.number(name));
+                sink.number(name, unit, self.number(name, &energies, &main_mass));
             }
         }
         let momentum = self.momentum();
@@ -132,22 +138,22 @@ impl<D: Dim> Mpm<D> {
         }
     }
 
-    fn number(&self, name: &str) -> f64 {
+    fn number(&self, name: &str, energies: &dyn Fn() -> Energies, main_mass: &dyn Fn() -> [f64; 2]) -> f64 {
         let farthest = |axis: usize, sign: f64| {
             let along = self.particles.position.iter().map(|at| sign * at.component(axis));
             sign * along.fold(f64::NEG_INFINITY, f64::max)
         };
         match name {
-            "front" => self.front_and_height()[0],
-            "height" => self.front_and_height()[1],
+            "front" => main_mass()[0],
+            "height" => main_mass()[1],
             "farthest" => farthest(0, 1.0),
             "lowest" => farthest(D::UP, -1.0),
-            "potential_energy" => self.energies().potential,
-            "kinetic_energy" => self.energies().translational(),
-            "kinetic_energy_x" => self.energies().kinetic[0],
-            "kinetic_energy_y" => self.energies().kinetic[1],
-            "kinetic_energy_z" => self.energies().kinetic[2],
-            "elastic_energy" => self.energies().elastic,
+            "potential_energy" => energies().potential,
+            "kinetic_energy" => energies().translational(),
+            "kinetic_energy_x" => energies().kinetic[0],
+            "kinetic_energy_y" => energies().kinetic[1],
+            "kinetic_energy_z" => energies().kinetic[2],
+            "elastic_energy" => energies().elastic,
             "loss_plastic" => self.losses.plastic,
             "loss_viscous" => self.losses.viscous,
             "loss_sliding_at_walls" => self.losses.friction,

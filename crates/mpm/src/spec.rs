@@ -69,12 +69,12 @@ pub enum ShapeSpec {
 /// When in a step stresses follow strains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum SchemeSpec {
-    /// After the motion; takes energy out of waves that are poorly resolved.
-    #[default]
+    /// After the motion; takes energy out of waves that are poorly resolved, and needs short steps.
     StressLast,
     /// Before forces are taken; keeps energy, and may gain some.
     StressFirst,
     /// After the motion, with velocities that particles handed back to the nodes.
+    #[default]
     ModifiedStressLast,
 }
 

@@ -30,6 +30,14 @@ pub struct Point {
     pub pareto: bool,
 }
 
+impl Point {
+    /// Of one run in which there is no chance.
+    pub(crate) fn of_one_run(scheme: &str, resolution: f64, dt: f64, error: f64, seconds: f64) -> Self {
+        let (problem, scheme) = (String::new(), scheme.to_owned());
+        Self { problem, scheme, resolution, dt, error, band: 0.0, seeds: 1, seconds, pareto: false }
+    }
+}
+
 /// A study of error against run time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Study {

@@ -107,6 +107,9 @@ pub struct Row {
     /// What makes the study fail: a guard that was silent, or a failure within the bounds.
     #[serde(skip)]
     pub fault: Option<String>,
+    /// Whether a run fails within the bounds, as the documentation of the method and `check` say it does: the study does not fail
+    /// by it, and counts it on its own.
+    pub known: bool,
 }
 
 /// Sweeps a method to its limits.

@@ -33,8 +33,11 @@ pub(super) fn build<D: Dim>(
     }
     let (walls, openings) = boundaries::<D>(scene, name, spec, sample.as_ref(), problems);
     let names: Vec<&str> = walls.iter().map(|wall| wall.name.as_str()).collect();
-    let grains = materials::grains::<D>(scene);
-    let stages = stages::actions::<D>((scene, name), &openings, &names, (grains.is_some(), problems));
+    let grains =
+        sample.as_ref().and_then(|sample| materials::grains::<D>(scene, &sample.bodies.first()?.said));
+    // Of a sample that is blamed already nothing is known.
+    let knows_grains = sample.is_none() || grains.is_some();
+    let stages = stages::actions::<D>((scene, name), &openings, &names, (knows_grains, problems));
     if let Some(step) = spec.time_step.filter(|step| step.value() <= 0.0) {
         problems.add(format!("solvers.{name}.time_step"), step, "a positive time", "");
     }

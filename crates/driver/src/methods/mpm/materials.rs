@@ -53,7 +53,7 @@ pub(super) struct KnownGrains {
 
 /// Grains that the continuum of a scene stands for: those that its sample would be filled with, or those of a law that grows with
 /// the rate of shear; none where neither is given.
-pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<KnownGrains> {
+pub(super) fn grains<D: Dim>(scene: &Scene, law: &ConstitutiveLawSpec) -> Option<KnownGrains> {
     let (material, grading) = match scene.sample.as_ref()? {
         Sample::Column { material, grading, .. } | Sample::Cylinder { material, grading, .. } => {
             (material, grading.as_ref())
@@ -61,9 +61,6 @@ pub(super) fn grains<D: Dim>(scene: &Scene) -> Option<KnownGrains> {
         Sample::Bodies(list) => (&list.first()?.material, None),
         _ => return None,
     };
-    let files = (&*scene.folder, Some(scene.dimension));
-    // What cannot be read is blamed where the law is built.
-    let law = scene.continua.get(material)?.law(files, "", &mut Problems::default())?;
     let of_law = match law {
         ConstitutiveLawSpec::MuI { grains: GrainsSpec::Dry { diameter, density }, .. } => {
             let [density, diameter] = [density.value(), diameter.value()];

@@ -9,12 +9,12 @@ use crate::methods::grids::coarse_grid;
 use crate::methods::member::{Averages, Member, NoGrid, Notes};
 use crate::methods::parts::Part;
 use crate::problems::Problems;
-use crate::scene::GridSpec;
+use crate::scene::{GridSpec, Scene};
 use granular_core::coarse::{CoarseFields, CoarseGrid, Constituents};
 use granular_core::units::Time;
 use granular_core::{Dim, FieldSink, Location, NodeKey, Shown, ShownAs, Simulation, Solver};
 use granular_mpm::spec::MpmSpec;
-use granular_mpm::{Mpm, Particle};
+use granular_mpm::{Mpm, Particle, Scheme, ShapeFunctions};
 use std::sync::Arc;
 
 /// Cells of a grid over which particles are averaged.
@@ -163,6 +163,19 @@ impl<D: Dim> Member for Continuum<D> {
             _ => None,
         });
         pushes.collect()
+    }
+
+    fn warnings(&self, _: &Scene, simulation: &Simulation) -> Vec<String> {
+        let options = simulation.get(self.key).options();
+        let is_unsafe = (options.shape, options.scheme) == (ShapeFunctions::Linear, Scheme::StressLast);
+        let name = &self.name;
+        let warning = || {
+            format!(
+                "`solvers.{name}.scheme`: with shape `Linear`, `StressLast` has no step that is safe everywhere: what enters a cell \
+                 may gain energy within the limit; take `ModifiedStressLast`, or shape `UniformGimp`"
+            )
+        };
+        is_unsafe.then(warning).into_iter().collect()
     }
 
     fn is_metric(&self, number: &str) -> bool {

@@ -7,6 +7,7 @@ use crate::problems::{Problems, nearest, quoted};
 use crate::scene::{BodySpec, Extent, Sample, Scene};
 use crate::solids::solid;
 use granular_constitutive::AnyLaw;
+use granular_constitutive::spec::ConstitutiveLawSpec;
 use granular_core::{Dim, Linear, SymmetricTensor, Vector};
 use granular_mpm::Particle;
 use granular_mpm::spec::MpmSpec;
@@ -20,6 +21,8 @@ const MOST_DRAWN: usize = 1_000_000;
 pub(super) struct BuiltBody<D: Dim> {
     /// Name of the continuum.
     pub(super) material: String,
+    /// Its law as the scene or a calibration says it.
+    pub(super) said: ConstitutiveLawSpec,
     pub(super) law: AnyLaw,
     /// Density at the start \[kg/m^3\].
     pub(super) density: f64,
@@ -60,11 +63,11 @@ pub(super) fn bodies<D: Dim>(
             let continuum = continuum::<D>(scene, "sample.material", material, outline.as_ref(), problems);
             let outline = outline?;
             let size = outline.size::<D>(width_of::<D>(sample, &outline, problems)?);
-            let (law, density) = continuum?;
+            let (said, law, density) = continuum?;
             check_cell(name, spec, size.width.min(size.height), problems)?;
             let particles = column::<D>(size, edge, problems)?;
             Some(BuiltSample {
-                bodies: vec![BuiltBody { material: material.clone(), law, density, particles }],
+                bodies: vec![BuiltBody { material: material.clone(), said, law, density, particles }],
                 column: Some(size),
             })
         }
@@ -110,14 +113,14 @@ fn check_cell(name: &str, spec: &MpmSpec, sample: f64, problems: &mut Problems) 
     None
 }
 
-/// The law and the density of a material, or what is wrong with them.
+/// The law of a material as it is said and built, and its density, or what is wrong with them.
 fn continuum<D: Dim>(
     scene: &Scene,
     path: &str,
     material: &str,
     outline: Option<&Outline>,
     problems: &mut Problems,
-) -> Option<(AnyLaw, f64)> {
+) -> Option<(ConstitutiveLawSpec, AnyLaw, f64)> {
     let Some(spec) = scene.continua.get(material) else {
         let known: Vec<&str> = scene.continua.keys().map(String::as_str).collect();
         let hint = nearest(material, known.iter().copied());
@@ -146,8 +149,9 @@ fn continuum<D: Dim>(
         }
     };
     let files = (&*scene.folder, Some(scene.dimension));
-    let law = spec.law(files, &format!("{place}."), problems)?;
-    Some((materials::law(&law, density, &format!("{place}.law"), problems)?, density))
+    let said = spec.law(files, &format!("{place}."), problems)?;
+    let law = materials::law(&said, density, &format!("{place}.law"), problems)?;
+    Some((said, law, density))
 }
 
 /// Width of a column \[m\]: as given, or as its grains fill.
@@ -227,7 +231,8 @@ fn one<D: Dim>(
     } else {
         problems.vector::<D, _>(&format!("{path}.velocity"), &spec.velocity)
     };
-    let (law, density) = continuum::<D>(scene, &format!("{path}.material"), &spec.material, None, problems)?;
+    let (said, law, density) =
+        continuum::<D>(scene, &format!("{path}.material"), &spec.material, None, problems)?;
     let (shape, velocity) = (shape?, velocity?);
     let (low, high) = shape.bounds();
     if !(low.is_finite() && high.is_finite()) {
@@ -248,7 +253,7 @@ fn one<D: Dim>(
         return None;
     }
     let particles = particles.into_iter().map(|particle| particle.moving(velocity)).collect();
-    Some(BuiltBody { material: spec.material.clone(), law, density, particles })
+    Some(BuiltBody { material: spec.material.clone(), said, law, density, particles })
 }
 
 /// Stress at rest: the weight of what is above the same place, and that times a ratio to the sides.

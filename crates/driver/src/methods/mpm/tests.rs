@@ -145,3 +145,21 @@ fn grids_show_the_solid_fraction_only_of_known_grains() {
     assert_eq!(problems(&[&output("inertial_number"), grains[0], grains[1]]), "[]");
     assert!(problems(&[&output("coordination"), grains[0], grains[1]]).contains("`coordination`"));
 }
+
+#[test]
+fn a_scene_that_leaves_choices_out_has_those_of_the_library() {
+    let spec: granular_mpm::spec::MpmSpec = SceneText::new("", "(cell: 1)").parse().unwrap();
+    assert_eq!(spec.options(false), granular_mpm::Options::default());
+}
+
+#[test]
+fn the_pair_of_choices_that_has_no_safe_step_is_warned_of() {
+    let warned = |edits: &[&str]| {
+        let report = check::check(&scene(edits)).unwrap();
+        report.warnings.iter().any(|warning| warning.contains("no step that is safe everywhere"))
+    };
+    assert!(!warned(&[]));
+    assert!(!warned(&["solvers.soil.scheme=StressLast"]));
+    assert!(!warned(&["solvers.soil.shape=Linear"]));
+    assert!(warned(&["solvers.soil.scheme=StressLast", "solvers.soil.shape=Linear"]));
+}

@@ -221,6 +221,7 @@ fn no_restitution() -> Row {
         outcome: Outcome::Refused,
         reason: format!("refused: {why}; no finite damping gives 0, and critical damping gives 0.135"),
         fault,
+        known: false,
     }
 }
 

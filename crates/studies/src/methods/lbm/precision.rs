@@ -241,18 +241,7 @@ fn cost(run: &Run) -> f64 {
 }
 
 fn point(run: &Run, measured: &Measured, seconds: f64) -> Point {
-    Point {
-        problem: String::new(),
-        scheme: run.scheme.clone(),
-        resolution: run.cells as f64,
-        dt: measured.dt,
-        error: measured.error,
-        // No chance is in these runs.
-        band: 0.0,
-        seeds: 1,
-        seconds,
-        pareto: false,
-    }
+    Point::of_one_run(&run.scheme, run.cells as f64, measured.dt, measured.error, seconds)
 }
 
 /// Orders of the schemes, from three points or more.

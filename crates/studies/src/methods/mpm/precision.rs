@@ -109,18 +109,8 @@ fn study(
         if !measured.said.is_empty() {
             notes.push(format!("{}, {} cells: {}", run.scheme, run.cells, measured.said));
         }
-        points.push(Point {
-            problem: String::new(),
-            scheme: run.scheme.clone(),
-            resolution: run.cells as f64,
-            dt: measured.dt,
-            error: measured.error,
-            // No chance is in these runs.
-            band: 0.0,
-            seeds: 1,
-            seconds,
-            pareto: false,
-        });
+        let Measured { dt, error, .. } = measured;
+        points.push(Point::of_one_run(&run.scheme, run.cells as f64, dt, error, seconds));
     }
     let orders = orders(&points);
     Ok(Study { case, error, resolution: "cells", points, orders, notes }.mark_front())

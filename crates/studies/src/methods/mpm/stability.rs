@@ -62,14 +62,13 @@ impl Variant {
     }
 }
 
-/// A row that tells a failure within the bounds that documentation tells too, as such.
+/// A row that tells a failure within the bounds that documentation and `check` tell too, as such.
 fn known(row: Row) -> Row {
-    match row.fault {
-        None => row,
-        Some(_) => {
-            Row { fault: None, reason: format!("known, nodes with little mass: {}", row.reason), ..row }
-        }
+    if row.fault.is_none() {
+        return row;
     }
+    let reason = format!("nodes with little mass: {}", row.reason);
+    Row { fault: None, known: true, reason, ..row }
 }
 
 /// How fine a study is.

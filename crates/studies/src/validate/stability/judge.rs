@@ -53,6 +53,7 @@ impl Swept<'_> {
             outcome,
             reason,
             fault,
+            known: false,
         }
     }
 }

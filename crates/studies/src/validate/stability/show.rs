@@ -21,7 +21,11 @@ pub fn table(rows: &[Row]) -> String {
                 Outcome::Refused => "refused",
                 Outcome::Stopped => "stopped",
             };
-            let mark = if row.fault.is_some() { "  FAILED" } else { "" };
+            let mark = match (&row.fault, row.known) {
+                (Some(_), _) => "  FAILED",
+                (None, true) => "  known to fail",
+                (None, false) => "",
+            };
             let _ = writeln!(text, "  {:<40} {predicted:>10} {observed:>10}  {outcome}{mark}", row.parameter);
             let reason: String = row.reason.chars().take(REASON).collect();
             let _ = writeln!(text, "      {reason}");
@@ -33,6 +37,10 @@ pub fn table(rows: &[Row]) -> String {
     if misnamed > 0 {
         let said = "limits where the guard stopped in time, but named a cell whose density makes sense";
         let _ = writeln!(text, "{misnamed} {said}");
+    }
+    let known = rows.iter().filter(|row| row.known).count();
+    if known > 0 {
+        let _ = writeln!(text, "{known} limits within which runs are known to fail, as `check` says");
     }
     let _ = writeln!(
         text,

@@ -46,5 +46,6 @@ fn row(case: &str, limit: f64, refusal: Option<SetupError>) -> Row {
         outcome: Outcome::Refused,
         reason: refusal.map_or_else(String::new, |error| format!("refused: {error}")),
         fault,
+        known: false,
     }
 }
