@@ -11,7 +11,7 @@ fn the_command_prints_the_promised_keys_and_keeps_its_plain_form() {
     assert_eq!(rows.len(), 8);
     for row in rows {
         let keys: Vec<&str> = row.as_object().unwrap().keys().map(String::as_str).collect();
-        let promised = "case parameter predicted_limit observed_limit outcome reason";
+        let promised = "case parameter predicted_limit observed_limit outcome reason known";
         assert_eq!(keys, promised.split(' ').collect::<Vec<_>>());
         assert!(["finished", "refused", "stopped"].contains(&row["outcome"].as_str().unwrap()), "{row}");
         assert!(!row["reason"].as_str().unwrap().is_empty());
