@@ -1,5 +1,9 @@
 //! Parts of a ball cut off by planes along the axes.
 
+mod in_box;
+
+pub(crate) use in_box::{disk_in_box, sphere_in_box};
+
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Positive nodes and weights of the Gauss-Legendre rule of 16 points on \[-1, 1\].

@@ -111,6 +111,10 @@ pub trait Dim: sealed::Sealed + Copy + Default + Debug + Send + Sync + 'static {
     /// Area \[m^2\] or volume \[m^3\] of the points of a ball about the origin that lie below `corner` \[m\] along
     /// every axis; exact in the plane, to about 1e-11 of the ball in space.
     fn ball_below(radius: f64, corner: Self::Vec) -> f64;
+    /// Area \[m^2\] or volume \[m^3\] of the points of a ball about the origin in the box from `low` to `high` \[m\]; exact in
+    /// the plane, in space to a few parts in 10 000 of a box that is smaller than the ball, and ten times faster than by
+    /// [`Dim::ball_below`].
+    fn ball_in_box(radius: f64, low: Self::Vec, high: Self::Vec) -> f64;
     /// Cross product of two vectors.
     fn cross(a: Self::Vec, b: Self::Vec) -> Self::Spin;
     /// Cross product `spin x arm`: the velocity at `arm` of a body that turns with `spin`.
@@ -283,6 +287,9 @@ impl Dim for D2 {
     fn ball_below(radius: f64, corner: DVec2) -> f64 {
         crate::ball::disk_below(radius, corner.x, corner.y)
     }
+    fn ball_in_box(radius: f64, low: DVec2, high: DVec2) -> f64 {
+        crate::ball::disk_in_box(radius, low.to_array(), high.to_array())
+    }
     #[inline(always)]
     fn cross(a: DVec2, b: DVec2) -> f64 {
         a.x * b.y - a.y * b.x
@@ -335,6 +342,9 @@ impl Dim for D3 {
     }
     fn ball_below(radius: f64, corner: DVec3) -> f64 {
         crate::ball::sphere_below(radius, corner.to_array())
+    }
+    fn ball_in_box(radius: f64, low: DVec3, high: DVec3) -> f64 {
+        crate::ball::sphere_in_box(radius, low.to_array(), high.to_array())
     }
     #[inline(always)]
     fn cross(a: DVec3, b: DVec3) -> DVec3 {

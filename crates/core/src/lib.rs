@@ -53,7 +53,10 @@ pub use glam;
 pub use grid::RegularGrid;
 pub use matrix::Matrix;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
-pub use quantity::{GrainMotion, Grains, HydroLoad, Load, LoadsMut, Motion, ObstacleMotion};
+pub use quantity::{
+    FlowLoad, FlowLoads, GrainMotion, Grains, HydroLoad, ImmersedGrain, ImmersedGrains, Load, LoadsMut,
+    Motion, ObstacleMotion,
+};
 pub use setup_error::SetupError;
 pub use shape::Shape;
 pub use simulation::{Clock, CouplingView, Ending, NodeKey, RunError, Simulation};

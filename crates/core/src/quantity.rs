@@ -1,7 +1,9 @@
 //! Quantities that more than one solver lends or takes.
 
+mod immersed;
 mod load;
 
+pub use immersed::{FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains};
 pub use load::{HydroLoad, Load, LoadsMut};
 
 use crate::dim::{Dim, Linear};

@@ -2,15 +2,25 @@
 
 use crate::body_force::ForceField;
 use crate::collision::{Parameters, Parts, Physics, With};
+use crate::immersed::Cells;
 use crate::lattice::{D2Q9, D3Q19, Lattice};
 use crate::populations::{Populations, Runs};
 use crate::real::Real;
 use crate::rows::RowLinks;
 use std::any::Any;
 
-type StepFunction<T> = fn(&mut Populations<T>, &Runs, &ForceField<T>, &Parameters<T>, T) -> bool;
-type PairFunction<T> =
-    fn(&mut Populations<T>, &Runs, &RowLinks<T>, &ForceField<T>, &[Parameters<T>; 2], T) -> bool;
+/// Fluid without grains, and cells that grains cover.
+type Where<'a, T> = (&'a Runs, &'a mut Cells<T>);
+type StepFunction<T> =
+    for<'a> fn(&mut Populations<T>, Where<'a, T>, &ForceField<T>, &Parameters<T>, T) -> bool;
+type PairFunction<T> = for<'a> fn(
+    &mut Populations<T>,
+    Where<'a, T>,
+    &RowLinks<T>,
+    &ForceField<T>,
+    &[Parameters<T>; 2],
+    T,
+) -> bool;
 
 /// One step, and two in one pass.
 pub(crate) type Steps<T> = (StepFunction<T>, PairFunction<T>);

@@ -6,6 +6,7 @@
 
 use crate::kernel::Rows;
 use crate::real::Real;
+use crate::saturated::CoveredRuns;
 use granular_core::{D2, D3, Dim};
 
 mod sealed {
@@ -15,7 +16,9 @@ mod sealed {
 }
 
 /// A velocity set of `Q` directions. Sealed: only [`D2Q9`] and [`D3Q19`].
-pub trait Lattice<const Q: usize>: sealed::Sealed + Rows<Q> + Copy + Send + Sync + 'static {
+pub trait Lattice<const Q: usize>:
+    sealed::Sealed + Rows<Q> + CoveredRuns<Q> + Copy + Send + Sync + 'static
+{
     /// The plane or space.
     type Dim: Dim;
     /// Usual name.

@@ -4,6 +4,7 @@ use crate::body_force::{self, BodyForce, Force, ForceField};
 use crate::boundary::{Beyond, Builder};
 use crate::choice::{Steps, step_function};
 use crate::collision::{Parameters, Physics};
+use crate::immersed::Immersed;
 use crate::lattice::Lattice;
 use crate::links::Cuts;
 use crate::named::SetFace;
@@ -32,6 +33,7 @@ pub struct Lbm<L: Lattice<Q>, const Q: usize, T: Real = f64> {
     /// Motion lent to the obstacles, and whether it was looked at since the last step.
     pub(crate) motions: Vec<Motion<L::Dim>>,
     pub(crate) may_have_moved: bool,
+    pub(crate) immersed: Immersed<L::Dim, T>,
     pub(crate) beyond: Beyond<T>,
     pub(crate) row_links: RowLinks<T>,
     /// As at the time reached.
@@ -97,6 +99,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             cover,
             motions: setup.obstacles.iter().map(|obstacle| obstacle.motion()).collect(),
             may_have_moved: false,
+            immersed: Immersed::default(),
             beyond,
             row_links: RowLinks::default(),
             parameters: physics.parameters::<L, T, Q>(),
@@ -224,6 +227,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             return Err(StepError::Step { dt, why });
         }
         self.meet_moved_obstacles()?;
+        self.meet_immersed_grains()?;
         let is_paired = steps >= PAIRED && self.is_pairable();
         if is_paired {
             self.sort_links();
@@ -240,13 +244,20 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
                 let parameters = [self.parameters, second];
                 self.row_links.take_dues(&self.beyond.obstacles);
                 let populations = &mut self.populations;
-                let is_beyond =
-                    two(populations, &self.runs, &self.row_links, &self.field, &parameters, bound);
+                let is_beyond = two(
+                    populations,
+                    self.immersed.places(&self.runs),
+                    &self.row_links,
+                    &self.field,
+                    &parameters,
+                    bound,
+                );
                 self.row_links.hand_over_kept(&mut self.beyond.obstacles);
                 (2, is_beyond)
             } else {
                 let populations = &mut self.populations;
-                (1, one(populations, &self.runs, &self.field, &self.parameters, bound))
+                let places = self.immersed.places(&self.runs);
+                (1, one(populations, places, &self.field, &self.parameters, bound))
             };
             self.steps += taken;
             self.follow_body_force();
@@ -255,6 +266,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             if is_beyond {
                 return Err(self.culprit());
             }
+        }
+        if !self.immersed.is_empty() {
+            self.immersed.sum_loads(&self.setup, self.force_scale());
         }
         Ok(())
     }

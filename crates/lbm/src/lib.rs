@@ -63,6 +63,8 @@ mod flow_field;
 mod gauge;
 #[cfg(feature = "png")]
 mod image;
+mod immersed;
+mod immersion;
 mod kernel;
 mod lattice;
 mod lbm;
@@ -80,6 +82,7 @@ mod probes;
 mod real;
 mod relax;
 mod rows;
+mod saturated;
 mod scales;
 mod setup;
 mod show;

@@ -16,7 +16,7 @@ use crate::real::Real;
 use granular_core::{Accepts, Dim, Linear, Motion, ObstacleMotion, Provides, Solver, StepError, Vector};
 
 /// Fastest motion of a surface \[cells per step\]: the speed of sound.
-const FASTEST: f64 = 0.577;
+pub(crate) const FASTEST: f64 = 0.577;
 
 impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<ObstacleMotion<L::Dim>> for Lbm<L, Q, T> {
     fn view(&self) -> &[Motion<L::Dim>] {
@@ -113,6 +113,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         }
         self.motions = motions;
         let uncovered = if ranges.is_empty() { Vec::new() } else { self.cover_again(&domain, &ranges) };
+        self.immersed.is_stale |= !ranges.is_empty();
         self.link_again(&changes, &ranges, &domain);
         uncovered
     }

@@ -102,7 +102,7 @@ pub(crate) struct Domain<D: Dim> {
     pub(crate) origin: D::Vec,
     pub(crate) spacing: f64,
     pub(crate) cells: [usize; 3],
-    is_periodic: [bool; 3],
+    pub(crate) is_periodic: [bool; 3],
 }
 
 /// A box of cells, its end excluded.

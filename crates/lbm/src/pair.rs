@@ -8,6 +8,7 @@
 
 use crate::body_force::ForceField;
 use crate::collision::{Parameters, Parts};
+use crate::immersed::{Cells, Met};
 use crate::lattice::Lattice;
 use crate::populations::{Grid, Layout, Populations, Row, Runs, Slab, collide_runs};
 use crate::real::Real;
@@ -47,8 +48,8 @@ impl<T: Real, const Q: usize> Window<'_, T, Q> {
         &mut self,
         (grid, layout): (&Grid, Layout),
         cells: Row<'_, T>,
-        parameters: &Parameters<T>,
-        bound: T,
+        met: &mut Met<'_, T>,
+        (parameters, bound): (&Parameters<T>, T),
     ) -> bool {
         let mut planes = self.planes.each_mut().map(Some);
         let mut starts = [0; Q];
@@ -57,7 +58,7 @@ impl<T: Real, const Q: usize> Window<'_, T, Q> {
             starts[i] = spot.place as usize - self.start;
             &mut **planes[spot.plane as usize].take().expect("each direction has a plane of its own")
         });
-        collide_runs::<L, T, P, Q>(&mut by_direction, starts, cells, parameters, bound)
+        collide_runs::<L, T, P, Q>(&mut by_direction, starts, cells, met, parameters, bound)
     }
 }
 
@@ -73,7 +74,7 @@ impl<T: Real> Populations<T> {
     /// are left to the caller. Returns whether any population at rest is not finite or larger than `bound` after either.
     pub(crate) fn two_steps<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
-        runs: &Runs,
+        (runs, cells): (&Runs, &mut Cells<T>),
         links: &RowLinks<T>,
         field: &ForceField<T>,
         [first, second]: &[Parameters<T>; 2],
@@ -86,19 +87,22 @@ impl<T: Real> Populations<T> {
         let planes = grid.planes::<T, Q>(&mut self.values);
         // Slabs have a row of the ring before the first row.
         let slabs = Slab { planes, pitch: grid.stride(1), lead: 1 };
-        Blocks::new(rows, size).for_each((slabs, PerBlock(&mut self.beyond)), |block, (slab, beyond)| {
+        let (covered, met) = cells.for_collisions();
+        let work = (slabs, met, PerBlock(&mut self.beyond));
+        Blocks::new(rows, size).for_each(work, |block, (slab, mut met, beyond)| {
             let [all, linked, inner] = rows_of_slab(rows, size, block);
             let start = if block == 0 { 0 } else { grid.row_start(all.start) };
             let mut window = Window { planes: slab.planes, start };
             let mut worst = false;
             for row in all {
-                worst |= window.collide::<L, P>(natural, Row { row, runs, field }, first, bound);
+                let cells = Row { row, runs, covered, field };
+                worst |= window.collide::<L, P>(natural, cells, &mut met, (first, bound));
                 if row > 0 && linked.contains(&(row - 1)) {
                     links.apply(row - 1, &mut window);
                 }
                 if row > 1 && inner.contains(&(row - 2)) {
-                    let cells = Row { row: row - 2, runs, field };
-                    worst |= window.collide::<L, P>(turned, cells, second, bound);
+                    let cells = Row { row: row - 2, runs, covered, field };
+                    worst |= window.collide::<L, P>(turned, cells, &mut met, (second, bound));
                 }
             }
             beyond.0[0] = worst;
@@ -109,13 +113,13 @@ impl<T: Real> Populations<T> {
             all.filter(|row| !linked.contains(row)).for_each(|row| links.apply(row, &mut everywhere));
         }
         let is_beyond = self.beyond[..Blocks::new(rows, size).count()].contains(&true);
-        self.late_rows::<L, P, Q>(runs, field, second, bound) | is_beyond
+        self.late_rows::<L, P, Q>((runs, cells), field, second, bound) | is_beyond
     }
 
     /// The second step where slabs meet, in blocks as long as slabs that begin before their late rows.
     fn late_rows<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
-        runs: &Runs,
+        (runs, cells): (&Runs, &mut Cells<T>),
         field: &ForceField<T>,
         parameters: &Parameters<T>,
         bound: T,
@@ -126,7 +130,9 @@ impl<T: Real> Populations<T> {
         let beyond = &mut self.beyond[..blocks.count()];
         let planes = grid.planes::<T, Q>(&mut self.values);
         let slabs = Slab { planes, pitch: grid.stride(1), lead: 1 - early as isize };
-        blocks.for_each((slabs, PerBlock(beyond)), |block, (slab, beyond)| {
+        let (covered, mut met) = cells.for_collisions();
+        met.lead = -(early as isize);
+        blocks.for_each((slabs, met, PerBlock(beyond)), |block, (slab, mut met, beyond)| {
             let range = blocks.range(block);
             let first = range.start.saturating_sub(early);
             let start = if block == 0 { 0 } else { grid.row_start(first) };
@@ -135,8 +141,8 @@ impl<T: Real> Populations<T> {
             for row in first..range.end - early {
                 let [_, _, inner] = rows_of_slab(rows, size, row / size);
                 if !inner.contains(&row) {
-                    let (from, cells) = ((grid, Layout::Turned), Row { row, runs, field });
-                    beyond.0[0] |= window.collide::<L, P>(from, cells, parameters, bound);
+                    let (from, cells) = ((grid, Layout::Turned), Row { row, runs, covered, field });
+                    beyond.0[0] |= window.collide::<L, P>(from, cells, &mut met, (parameters, bound));
                 }
             }
         });

@@ -12,12 +12,14 @@
 
 use crate::body_force::ForceField;
 use crate::collision::{Parameters, Parts};
+use crate::immersed::{Cells, CoveredRows, Met};
 use crate::lattice::{Lattice, opposite};
 use crate::pages::Pages;
 use crate::pair::slab_rows;
 use crate::real::Real;
 use crate::rows::Spot;
 use granular_core::blocks::{Blocks, Divide, PerBlock};
+use std::ops::Range;
 
 /// Where populations lie between steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,7 +126,7 @@ impl Grid {
     }
 
     /// Index of the row of a cell among the rows from the first of the domain on.
-    fn row_of(&self, y: usize, z: usize) -> usize {
+    pub(crate) fn row_of(&self, y: usize, z: usize) -> usize {
         z * (self.cells[1] + 2) + y
     }
 }
@@ -189,6 +191,23 @@ impl Runs {
             }
             x += 1;
         }
+    }
+
+    /// Of no row yet, to be built row by row.
+    pub(crate) fn clear(&mut self) {
+        self.starts.clear();
+        self.starts.push(0);
+        self.runs.clear();
+    }
+
+    /// Adds a run to the row that is being built.
+    pub(crate) fn push(&mut self, run: [u32; 2]) {
+        self.runs.push(run);
+    }
+
+    /// Ends the row that is being built.
+    pub(crate) fn end_row(&mut self) {
+        self.starts.push(self.runs.len() as u32);
     }
 
     pub(crate) fn rows(&self) -> usize {
@@ -261,11 +280,12 @@ impl<T: Real> Populations<T> {
     /// Collides and moves all fluid cells. Returns whether any population at rest is not finite or larger than `bound`.
     pub(crate) fn step<L: Lattice<Q>, P: Parts, const Q: usize>(
         &mut self,
-        runs: &Runs,
+        (runs, cells): (&Runs, &mut Cells<T>),
         field: &ForceField<T>,
         parameters: &Parameters<T>,
         bound: T,
     ) -> bool {
+        let (covered, met) = cells.for_collisions();
         let layout = self.layout;
         let pitch = self.grid.pitch;
         let starts: [usize; Q] =
@@ -277,14 +297,15 @@ impl<T: Real> Populations<T> {
             let values = by_plane[start / plane].take().expect("each direction has a plane of its own");
             &mut values[start % plane..start % plane + length]
         });
-        let work = (Slab { planes, pitch, lead: 0 }, PerBlock(&mut self.beyond));
-        Blocks::new(runs.rows(), self.slab).for_each(work, |block, (mut slab, beyond)| {
+        let work = (Slab { planes, pitch, lead: 0 }, met, PerBlock(&mut self.beyond));
+        Blocks::new(runs.rows(), self.slab).for_each(work, |block, (mut slab, mut met, beyond)| {
             let mut worst = false;
             let first = block * self.slab;
             for row in first..(first + self.slab).min(runs.rows()) {
                 let starts = [(row - first) * pitch; Q];
-                let cells = Row { row, runs, field };
-                worst |= collide_runs::<L, T, P, Q>(&mut slab.planes, starts, cells, parameters, bound);
+                let cells = Row { row, runs, covered, field };
+                worst |=
+                    collide_runs::<L, T, P, Q>(&mut slab.planes, starts, cells, &mut met, parameters, bound);
             }
             beyond.0[0] = worst;
         });
@@ -310,11 +331,12 @@ impl<T: Real> Populations<T> {
     }
 }
 
-/// A row of cells, where fluid is, and the force there if it varies in space.
+/// A row of cells, where fluid is alone and with grains, and the force there if it varies in space.
 #[derive(Clone, Copy)]
 pub(crate) struct Row<'a, T> {
     pub(crate) row: usize,
     pub(crate) runs: &'a Runs,
+    pub(crate) covered: CoveredRows<'a, T>,
     pub(crate) field: &'a ForceField<T>,
 }
 
@@ -325,22 +347,41 @@ pub(crate) fn collide_runs<L: Lattice<Q>, T: Real, P: Parts, const Q: usize>(
     planes: &mut [&mut [T]; Q],
     starts: [usize; Q],
     cells: Row<'_, T>,
+    met: &mut Met<'_, T>,
     parameters: &Parameters<T>,
     bound: T,
 ) -> bool {
     let mut worst = false;
+    for &piece in cells.covered.of_row(cells.row) {
+        let range = piece.from as usize..piece.to as usize;
+        let field = if P::FIELD { cells.field.of_row(cells.row, range.clone()) } else { [&[] as &[T]; 3] };
+        let mut rows = rows_of(planes, starts, range);
+        let with = cells.covered.of_piece(piece, met);
+        L::collide_covered::<T, P>(rows.each_mut().map(|row| &mut **row), with, field, parameters);
+        worst |= is_beyond(rows[0], bound);
+    }
     for &[a, b] in cells.runs.of_row(cells.row) {
         let range = a as usize..b as usize;
         let field = if P::FIELD { cells.field.of_row(cells.row, range.clone()) } else { [&[] as &[T]; 3] };
-        let mut planes = planes.iter_mut().zip(starts);
-        let mut rows: [&mut [T]; Q] = std::array::from_fn(|_| {
-            let (plane, start) = planes.next().expect("one per direction");
-            &mut plane[start + range.start..start + range.end]
-        });
+        let mut rows = rows_of(planes, starts, range);
         L::collide_row::<T, P>(rows.each_mut().map(|row| &mut **row), field, parameters);
         worst |= is_beyond(rows[0], bound);
     }
     worst
+}
+
+/// Cells of a row that begins at `starts` in the planes of the directions.
+#[inline]
+fn rows_of<'a, T, const Q: usize>(
+    planes: &'a mut [&mut [T]; Q],
+    starts: [usize; Q],
+    range: Range<usize>,
+) -> [&'a mut [T]; Q] {
+    let mut planes = planes.iter_mut().zip(starts);
+    std::array::from_fn(|_| {
+        let (plane, start) = planes.next().expect("one per direction");
+        &mut plane[start + range.start..start + range.end]
+    })
 }
 
 /// Whether any value is not finite or larger than `bound`.

@@ -26,6 +26,8 @@ const FIELDS: [(&str, &str, &str); 7] = [
 const STREAM_FUNCTION: (&str, &str, &str) =
     ("stream_function", "m^2/s", "flow rate per depth between a point and the centre of the first cell");
 
+const GRAIN_SHARE: (&str, &str, &str) = ("grain_share", "-", "share of the cell that grains cover");
+
 const NUMBERS: [(&str, &str, &str); 5] = [
     ("mass", "kg", "mass of the fluid"),
     ("mass_excess", "kg", "mass of the fluid over that at the density at rest"),
@@ -39,6 +41,9 @@ pub(crate) fn shown<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>) 
     let mut list: Vec<Shown> = FIELDS.map(|field| of(field, ShownAs::Field)).into();
     if L::Dim::N == 2 {
         list.push(of(STREAM_FUNCTION, ShownAs::Field));
+    }
+    if lbm.immersed.is_on {
+        list.push(of(GRAIN_SHARE, ShownAs::Field));
     }
     list.extend(NUMBERS.map(|number| of(number, ShownAs::Number)));
     for obstacle in &lbm.setup.obstacles {
@@ -140,6 +145,9 @@ fn show_fields<L: Lattice<Q>, const Q: usize, T: Real>(lbm: &Lbm<L, Q, T>, sink:
         && let Some(values) = lbm.stream_function()
     {
         sink.field("stream_function", "m^2/s", FieldRef::Scalar(&values));
+    }
+    if lbm.immersed.is_on && sink.wants("grain_share") {
+        sink.field("grain_share", "-", FieldRef::Scalar(&lbm.grain_shares()));
     }
     if sink.wants("solid") {
         let values = lbm.map(|cell| lbm.covered_by(cell));

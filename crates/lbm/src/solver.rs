@@ -76,6 +76,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             .obstacles
             .iter()
             .map(|body| body.velocity.length() + body.spin.length() * body.shape.reach());
+        let bodies = bodies.chain([self.immersed.fastest()]);
         entering.chain(bodies).fold(setup.expected_speed.max(setup.fastest_wall()), f64::max)
     }
 
@@ -149,7 +150,12 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             + self.row_links.bytes()
             + self.beyond.obstacles.iter().map(|cuts| cuts.bytes()).sum::<usize>()
             + self.beyond.open.bytes();
-        let bytes = populations + links + self.field.bytes() + self.runs.bytes() + 2 * self.cover.capacity();
+        let bytes = populations
+            + links
+            + self.field.bytes()
+            + self.runs.bytes()
+            + self.immersed.bytes()
+            + 2 * self.cover.capacity();
         let mut left_out = Vec::new();
         let mut note = |is_off: bool, text: &str| {
             if is_off {
@@ -160,6 +166,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         note(!self.physics.has_closure(), "eddy viscosity: no Smagorinsky constant is set");
         note(!self.physics.has_ghosts(), "rates of energy moments: the operator has none");
         note(self.cover.is_empty(), "cells covered by obstacles: there are none");
+        note(!self.immersed.is_on, "cells covered by grains: no law puts grains into the fluid");
         note(self.beyond.open.is_empty(), "open faces: there are none");
         left_out.push("density and velocity: computed from populations when an output asks".to_owned());
         Memory { bytes, bytes_per_item: bytes / self.setup.cells.iter().product::<usize>().max(1), left_out }
@@ -202,6 +209,10 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
 
     fn advance(&mut self, dt: f64, steps: u64) -> Result<(), StepError> {
         self.populations.slabs(&self.runs).inside_pool(|| self.advance_by(dt, steps))
+    }
+
+    fn clear_inputs(&mut self) {
+        self.immersed.given.clear();
     }
 
     fn places(&self) -> Vec<(&'static str, Location<'_>)> {
@@ -252,6 +263,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         if !seen.is_empty() {
             to.put("what absorbing faces saw", &seen);
         }
+        self.save_immersed(to);
         self.save_faces(to);
     }
 
@@ -266,6 +278,7 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Solver for Lbm<L, Q, T> {
         let motions = self.saved_motions(from)?;
         self.restore_faces(from)?;
         self.place_obstacles(motions);
+        self.restore_immersed(from)?;
         let populations: Vec<T> = from.array_of("populations", self.fluid_cells * Q)?;
         let loads: Vec<[f64; 6]> =
             from.array_of("force and torque on obstacles", self.beyond.obstacles.len())?;

@@ -1,7 +1,7 @@
 //! Sound at open faces.
 
 use granular_core::glam::{DVec2, DVec3};
-use granular_core::{Accepts, D2, D3, Dim, Linear, Motion, Section, Solver};
+use granular_core::{Accepts, D2, D3, Dim, Linear, Motion, ObstacleMotion, Section, Solver};
 use granular_lbm::*;
 
 const LENGTH: usize = 300;
@@ -186,7 +186,8 @@ fn falls_along_a_face(steps: std::ops::Range<u64>, from: Option<&Section>) -> Se
     let dt = lbm.setup().time_step;
     for step in steps {
         let position = DVec2::new(20.0 + 2.0 * (0.01 * step as f64).sin(), 30.0 - 0.05 * step as f64);
-        lbm.view_mut()[0] = Motion::new(position, DVec2::new(0.0, -speed), 0.0);
+        Accepts::<ObstacleMotion<_>>::view_mut(&mut lbm)[0] =
+            Motion::new(position, DVec2::new(0.0, -speed), 0.0);
         lbm.advance(dt, 1).unwrap();
     }
     let mut section = Section::new("solver");

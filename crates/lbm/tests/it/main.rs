@@ -9,6 +9,7 @@ mod body_forces;
 mod channel;
 mod contract;
 mod edges;
+mod immersed;
 mod lattices;
 mod limits;
 mod mass;
