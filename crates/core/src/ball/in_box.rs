@@ -5,9 +5,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Positive nodes and weights of the Gauss-Legendre rule of 6 points on \[-1, 1\].
 const GAUSS: [(f64, f64); 3] = [
-    (0.238_619_186_083_196_9, 0.467_913_934_572_691_0),
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691),
     (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
-    (0.932_469_514_203_152_0, 0.171_324_492_379_170_3),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_3),
 ];
 
 /// Area of the points of a disk about the origin in a rectangle. Exact.
