@@ -54,8 +54,8 @@ pub use grid::RegularGrid;
 pub use matrix::Matrix;
 pub use observer::{Every, Flow, Observer, ObserverError, Scheduled};
 pub use quantity::{
-    FlowLoad, FlowLoads, GrainMotion, Grains, HydroLoad, ImmersedGrain, ImmersedGrains, Load, LoadsMut,
-    Motion, ObstacleMotion,
+    CoveredFluid, FlowLoad, FlowLoads, GrainMotion, Grains, HydroLoad, ImmersedGrain, ImmersedGrains, Load,
+    LoadsMut, Motion, ObstacleMotion,
 };
 pub use setup_error::SetupError;
 pub use shape::Shape;

@@ -3,7 +3,7 @@
 mod immersed;
 mod load;
 
-pub use immersed::{FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains};
+pub use immersed::{CoveredFluid, FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains};
 pub use load::{HydroLoad, Load, LoadsMut};
 
 use crate::dim::{Dim, Linear};

@@ -6,6 +6,7 @@
 //! | law | from | to |
 //! |---|---|---|
 //! | [`CarriedObstacles`] | motion of grains | obstacles of a fluid |
+//! | [`ResolvedGrains`] | motion of grains | grains in a fluid, and back: its loads on them |
 //!
 //! [`PrescribedMotion`] is a solver whose bodies follow [`Path`]s known beforehand. A disk that oscillates in water:
 //!
@@ -33,9 +34,12 @@
 //! ```
 
 mod carried;
+mod middle;
 mod path;
 mod prescribed;
+mod resolved;
 
 pub use carried::CarriedObstacles;
 pub use path::{Body, Path, PathError};
 pub use prescribed::PrescribedMotion;
+pub use resolved::{HeldLoad, ResolvedGrains, ResolvedOptions};

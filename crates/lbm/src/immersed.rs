@@ -18,6 +18,7 @@
 //! rest of the fluid is left to the kernels that it has without grains.
 
 mod cells;
+mod frame;
 mod spans;
 mod tile;
 
@@ -27,8 +28,9 @@ use crate::obstacle::Domain;
 use crate::populations::{Grid, Runs};
 use crate::real::Real;
 use crate::setup::Setup;
+use frame::{Frame, Taken, Units, centre_in_cells};
 use granular_core::blocks::{Blocks, Divide};
-use granular_core::quantity::{ImmersedGrain, Load};
+use granular_core::quantity::{CoveredFluid, ImmersedGrain, Load};
 use granular_core::{Dim, Linear, Motion, Vector};
 use spans::{Bounds, Spans};
 use tile::Tile;
@@ -49,6 +51,8 @@ pub(crate) struct Immersed<D: Dim, T> {
     pub(crate) met: Vec<ImmersedGrain<D>>,
     /// What the flow did to them then.
     pub(crate) loads: Vec<Load<D>>,
+    /// The fluid that they found.
+    pub(crate) covered: Vec<CoveredFluid<D>>,
     tiles: Vec<Tile>,
     spans: Spans,
     pub(crate) cells: Cells<T>,
@@ -98,6 +102,7 @@ impl<D: Dim, T: Real> Immersed<D, T> {
         });
         self.is_stale = false;
         self.loads.resize(self.met.len(), Load::ZERO);
+        self.covered.resize(self.met.len(), CoveredFluid::NONE);
         if !self.is_empty() {
             self.lay_out(around);
         }
@@ -128,21 +133,25 @@ impl<D: Dim, T: Real> Immersed<D, T> {
         self.cells.leave_out_solids();
     }
 
-    /// Sums what each grain took, in the order of its cells. `scale` is a lattice unit of force \[N\].
+    /// Sums what each grain took and what it found, in the order of its cells. `scale` is a lattice unit of force \[N\].
     pub(crate) fn sum_loads(&mut self, setup: &Setup<D>, scale: f64) {
-        let Self { cells, spans, tiles, met, loads, .. } = self;
+        let Self { cells, spans, tiles, met, loads, covered, .. } = self;
         let grains = Frame { grains: met, tiles, domain: Domain::of(setup) };
         let speed = setup.lattice_speed();
-        Blocks::new(met.len(), GRAINS).for_each(&mut loads[..], |block, loads| {
-            for (k, load) in loads.iter_mut().enumerate() {
-                let number = block * GRAINS + k;
-                let mut sum = Load::<D>::ZERO;
-                for span in spans.of_grain(number) {
-                    sum += grains.taken(span, cells, 1.0 / speed);
+        let units = Units { force: scale, spacing: setup.spacing, time_step: setup.time_step };
+        Blocks::new(met.len(), GRAINS).for_each(
+            (&mut loads[..], &mut covered[..]),
+            |block, (loads, covered)| {
+                for (k, (load, covered)) in loads.iter_mut().zip(covered).enumerate() {
+                    let number = block * GRAINS + k;
+                    let mut sum = Taken::default();
+                    for span in spans.of_grain(number) {
+                        grains.take(span, cells, 1.0 / speed, &mut sum);
+                    }
+                    (*load, *covered) = sum.in_units(&units, tiles[number].total());
                 }
-                *load = Load { force: sum.force * scale, torque: sum.torque * (scale * setup.spacing) };
-            }
-        });
+            },
+        );
     }
 
     /// The share of each cell that grains cover, x fastest.
@@ -172,6 +181,7 @@ impl<D: Dim, T: Real> Immersed<D, T> {
     pub(crate) fn bytes(&self) -> usize {
         size_of::<ImmersedGrain<D>>() * (self.given.capacity() + self.met.capacity())
             + size_of::<Load<D>>() * self.loads.capacity()
+            + size_of::<CoveredFluid<D>>() * self.covered.capacity()
             + self.tiles.iter().map(|tile| size_of::<Tile>() + tile.bytes()).sum::<usize>()
             + self.spans.bytes()
             + self.cells.bytes()
@@ -184,16 +194,6 @@ pub(crate) fn speed_of<D: Dim>(grain: &ImmersedGrain<D>) -> f64 {
     grain.motion.velocity.length() + grain.radius * grain.motion.spin.length()
 }
 
-/// The centre of a grain in cells, in the domain where that repeats.
-fn centre_in_cells<D: Dim>(grain: &ImmersedGrain<D>, domain: &Domain<D>) -> D::Vec {
-    let mut centre = (grain.motion.position - domain.origin) * (1.0 / domain.spacing);
-    for axis in (0..D::N).filter(|axis| domain.is_periodic[*axis]) {
-        let cells = domain.cells[axis] as f64;
-        centre -= D::Vec::along(axis, (centre.component(axis) / cells).floor() * cells);
-    }
-    centre
-}
-
 /// Finds what a grain covers.
 fn place<D: Dim>(tile: &mut Tile, grain: &ImmersedGrain<D>, domain: &Domain<D>) {
     let (centre, radius) = (centre_in_cells(grain, domain), grain.radius / domain.spacing);
@@ -202,51 +202,6 @@ fn place<D: Dim>(tile: &mut Tile, grain: &ImmersedGrain<D>, domain: &Domain<D>) 
         at + radius > 0.0 && at - radius < cells
     };
     if (0..D::N).all(reaches) { tile.cover::<D>(centre, radius) } else { tile.clear() }
-}
-
-/// Grains with what they cover.
-struct Frame<'a, D: Dim> {
-    grains: &'a [ImmersedGrain<D>],
-    tiles: &'a [Tile],
-    domain: Domain<D>,
-}
-
-impl<D: Dim> Frame<'_, D> {
-    /// Shares of a span, and the arm \[cells\] of its first cell.
-    fn of(&self, span: &spans::Span) -> (&ImmersedGrain<D>, &[f64], D::Vec) {
-        let grain = &self.grains[span.grain as usize];
-        let shares = self.tiles[span.grain as usize].shares(span.share as usize, span.count as usize);
-        let centre = D::Vec::from_fn(|axis| span.cell[axis] as f64 + 0.5);
-        (grain, shares, centre - centre_in_cells(grain, &self.domain))
-    }
-
-    /// Velocity of a grain at an arm \[cells\], and its change from cell to cell along x, over the speed of the lattice.
-    fn velocities(&self, grain: &ImmersedGrain<D>, arm: D::Vec, per_speed: f64) -> [D::Vec; 2] {
-        let Motion { velocity, spin, .. } = grain.motion;
-        let turning = spin * (self.domain.spacing * per_speed);
-        [velocity * per_speed + D::turn(turning, arm), D::turn(turning, D::Vec::along(0, 1.0))]
-    }
-
-    /// Momentum and its moment \[cells\] that a grain took in the cells of a span.
-    fn taken<T: Real>(&self, span: &spans::Span, cells: &Cells<T>, per_speed: f64) -> Load<D> {
-        let (grain, shares, arm) = self.of(span);
-        let [start, slope] = self.velocities(grain, arm, per_speed);
-        let first = span.at as usize;
-        let (per_share, density) =
-            (&cells.per_share[first..][..shares.len()], &cells.density[first..][..shares.len()]);
-        let momentum =
-            cells.momentum.each_ref().map(|values| values.get(first..first + shares.len()).unwrap_or(&[]));
-        let mut sum = Load::<D>::ZERO;
-        for k in 0..shares.len() {
-            let along = k as f64;
-            let (weight, own) = (shares[k] * per_share[k].double(), start + slope * along);
-            let met = D::Vec::from_fn(|axis| momentum[axis][k].double());
-            let force = (met - own * density[k].double()) * weight;
-            sum.force += force;
-            sum.torque += D::cross(arm + D::Vec::along(0, along), force);
-        }
-        sum
-    }
 }
 
 /// Numbers of covered cells in some rows: weight over share, weight, and the components of velocity.

@@ -1,12 +1,12 @@
 //! Grains that others put into the fluid, and the loads that they get back.
 
-use crate::immersed::{Surroundings, speed_of};
+use crate::immersed::{Immersed, Surroundings, speed_of};
 use crate::lattice::Lattice;
 use crate::lbm::Lbm;
 use crate::moving::FASTEST;
 use crate::obstacle::Domain;
 use crate::real::Real;
-use granular_core::quantity::{FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains, Load};
+use granular_core::quantity::{CoveredFluid, FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains, Load};
 use granular_core::{Accepts, Dim, Motion, Provides, Section, SnapshotError, Solver, StepError};
 
 impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<ImmersedGrains<L::Dim>> for Lbm<L, Q, T> {
@@ -32,8 +32,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Accepts<ImmersedGrains<L::Dim>> for
 /// Grains are filled with fluid, which moves with them.
 impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<FlowLoad<L::Dim>> for Lbm<L, Q, T> {
     fn view(&self) -> FlowLoads<'_, L::Dim> {
-        let density = self.setup.density;
-        FlowLoads { loads: &self.immersed.loads, density, inner_density: density }
+        let (density, spacing) = (self.setup.density, self.setup.spacing);
+        let Immersed { loads, covered, .. } = &self.immersed;
+        FlowLoads { loads, covered, density, inner_density: density, spacing }
     }
 }
 
@@ -104,11 +105,13 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let spins: Vec<_> = motions().map(|motion| motion.spin).collect();
         let radii: Vec<_> = self.immersed.met.iter().map(|grain| grain.radius).collect();
         let loads: Vec<_> = self.immersed.loads.iter().map(|load| (load.force, load.torque)).collect();
+        let covered: Vec<_> = self.immersed.covered.iter().map(stored).collect();
         to.put("positions of grains in the fluid", &positions);
         to.put("velocities of grains in the fluid", &velocities);
         to.put("spins of grains in the fluid", &spins);
         to.put("radii of grains in the fluid", &radii);
         to.put("loads on grains in the fluid", &loads);
+        to.put("fluid in the place of grains", &covered);
     }
 
     /// Takes up grains and loads.
@@ -125,12 +128,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let spins: Vec<Turn<L, Q>> = from.array_of("spins of grains in the fluid", radii.len())?;
         let loads: Vec<(Place<L, Q>, Turn<L, Q>)> =
             from.array_of("loads on grains in the fluid", radii.len())?;
+        let covered: Vec<(f64, (Place<L, Q>, Turn<L, Q>))> =
+            from.array_of("fluid in the place of grains", radii.len())?;
+        let covered: Vec<CoveredFluid<L::Dim>> = covered.into_iter().map(taken_up).collect();
         let motion = |k: usize| Motion::new(positions[k], velocities[k], spins[k]);
         let grains =
             (0..radii.len()).map(|k| ImmersedGrain { motion: motion(k), radius: radii[k] }).collect();
         let loads: Vec<_> = loads.into_iter().map(|(force, torque)| Load { force, torque }).collect();
         let before = std::mem::replace(&mut self.immersed.given, grains);
-        if self.check_immersed().is_err() || !loads.iter().all(Load::is_finite) {
+        let are_finite = loads.iter().all(Load::is_finite) && covered.iter().all(CoveredFluid::is_finite);
+        if self.check_immersed().is_err() || !are_finite {
             self.immersed.given = before;
             let found = "a grain that the fluid cannot meet".to_owned();
             return Err(SnapshotError::Damaged {
@@ -139,7 +146,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
             });
         }
         self.find_covered_cells();
-        self.immersed.loads = loads;
+        (self.immersed.loads, self.immersed.covered) = (loads, covered);
         Ok(())
     }
+}
+
+/// As a section holds it.
+fn stored<D: Dim>(fluid: &CoveredFluid<D>) -> (f64, (D::Vec, D::Spin)) {
+    (fluid.share, (fluid.momentum, fluid.angular_momentum))
+}
+
+fn taken_up<D: Dim>((share, (momentum, angular_momentum)): (f64, (D::Vec, D::Spin))) -> CoveredFluid<D> {
+    CoveredFluid { share, momentum, angular_momentum }
 }

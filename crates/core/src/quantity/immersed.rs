@@ -1,6 +1,6 @@
 //! Grains in a fluid that is resolved between them.
 
-use crate::dim::Dim;
+use crate::dim::{Dim, Linear};
 use crate::exchange::Quantity;
 use crate::quantity::{Load, Motion};
 use std::marker::PhantomData;
@@ -42,6 +42,8 @@ impl<D: Dim> Quantity for ImmersedGrains<D> {
 /// fluid at rest has no load, though pressure grows with depth. The whole force of the fluid on a grain of hydrodynamic volume `V` is
 /// `load + inner_density V dU/dt - density V g`, `U` being the velocity of the grain and `g` the part of the body force on the
 /// fluid that is a weight. (A body force that stands for the mean gradient of a pressure does not enter: the load has its push.)
+/// The torque lacks the inertia of the fluid within the grain in the same way. In the first step `dU` begins at the velocity of the
+/// fluid that the grain found in its place ([`CoveredFluid`]).
 #[derive(Clone, Copy, Debug)]
 pub struct FlowLoad<D>(PhantomData<D>);
 
@@ -52,14 +54,46 @@ impl<D: Dim> Quantity for FlowLoad<D> {
     type ViewMut<'a> = &'a mut [Load<D>];
 }
 
-/// Loads of the flow, and densities of the fluid.
+/// Loads of the flow, and the fluid in which they arise.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowLoads<'a, D: Dim> {
     /// Mean over the last step, one per grain.
     pub loads: &'a [Load<D>],
+    /// The fluid that each grain covered when the last step began.
+    pub covered: &'a [CoveredFluid<D>],
     /// Density of the fluid \[kg/m^3\].
     pub density: f64,
     /// Density \[kg/m^3\] of the fluid that fills grains and moves with them; zero where there is none. Loads then contain what
     /// it takes to accelerate it.
     pub inner_density: f64,
+    /// The smallest length that the fluid resolves \[m\], such as the edge of a cell.
+    pub spacing: f64,
+}
+
+/// The fluid that a grain covers: as it was before the grain acted on it.
+#[derive(Clone, Copy, Debug)]
+pub struct CoveredFluid<D: Dim> {
+    /// Share of the grain that lies in the fluid: exactly 1 where all of it does, less where it reaches beyond a face or into an obstacle.
+    pub share: f64,
+    /// Momentum \[kg m/s\] of the fluid; per metre of depth in the plane.
+    pub momentum: D::Vec,
+    /// Angular momentum \[kg m^2/s\] about the centre of the grain; per metre of depth in the plane.
+    pub angular_momentum: D::Spin,
+}
+
+impl<D: Dim> CoveredFluid<D> {
+    /// Nothing is covered.
+    pub const NONE: Self = Self { share: 0.0, momentum: D::Vec::ZERO, angular_momentum: D::Spin::ZERO };
+
+    /// Whether all components are finite.
+    pub fn is_finite(&self) -> bool {
+        self.share.is_finite() && self.momentum.is_finite() && self.angular_momentum.is_finite()
+    }
+}
+
+impl<D: Dim> PartialEq for CoveredFluid<D> {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { share, momentum, angular_momentum } = self;
+        *share == other.share && *momentum == other.momentum && *angular_momentum == other.angular_momentum
+    }
 }

@@ -6,6 +6,9 @@
 mod bits;
 mod forces;
 mod refusals;
+mod resolved;
+mod resolved_flows;
+mod tank;
 
 #[global_allocator]
 static ALLOCATOR: granular_core::testing::CountingAllocator =

@@ -11,6 +11,8 @@ pub(super) struct Tile {
     shares: Vec<f64>,
     /// Per row of the box: the first cell that is covered and the one after the last, from `low` on.
     covered: Vec<[u32; 2]>,
+    /// Sum of all shares, in the order in which they lie.
+    total: f64,
 }
 
 /// Covered cells of one row of a tile.
@@ -28,6 +30,7 @@ impl Tile {
     pub(super) fn clear(&mut self) {
         self.size = [0; 3];
         self.covered.clear();
+        self.total = 0.0;
     }
 
     /// Shares of all cells near a ball. Only cells that its surface cuts cost more than a store.
@@ -46,6 +49,16 @@ impl Tile {
             let covered = self.cover_row::<D>([row % ny, row / ny], row * nx, centre, radius);
             self.covered.push(covered);
         }
+        let mut total = 0.0;
+        for stretch in self.stretches() {
+            self.shares(stretch.at, stretch.count).iter().for_each(|share| total += share);
+        }
+        self.total = total;
+    }
+
+    /// Sum of all shares; that of the cells of all stretches one after the other, to the bit.
+    pub(super) fn total(&self) -> f64 {
+        self.total
     }
 
     fn cover_row<D: Dim>(&mut self, row: [usize; 2], at: usize, centre: D::Vec, radius: f64) -> [u32; 2] {
