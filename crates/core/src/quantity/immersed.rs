@@ -77,7 +77,7 @@ pub struct CoveredFluid<D: Dim> {
     pub share: f64,
     /// Momentum \[kg m/s\] of the fluid; per metre of depth in the plane.
     pub momentum: D::Vec,
-    /// Angular momentum \[kg m^2/s\] about the centre of the grain; per metre of depth in the plane.
+    /// Angular momentum \[kg m^2/s\] about its own centre; per metre of depth in the plane.
     pub angular_momentum: D::Spin,
 }
 

@@ -30,7 +30,7 @@ fn a_disk_settles_at_the_speed_of_faxen() {
     let balls = vec![(DVec2::new(30.0, 122.3), DVec2::ZERO, 0.5 * diameter)];
     let balls = Balls { gravity, ..Balls::<D2>::of(density, balls) };
     let mut tank = Plane::new(setup, |_| DVec2::ZERO, &balls, ResolvedOptions::new(gravity));
-    tank.advance(4000);
+    tank.advance(9000);
     let before = tank.velocity(0);
     tank.advance(1000);
     let speed = tank.velocity(0);

@@ -6,7 +6,7 @@ use super::tile::Tile;
 use crate::obstacle::Domain;
 use crate::real::Real;
 use granular_core::quantity::{CoveredFluid, ImmersedGrain, Load};
-use granular_core::{Dim, Motion, Vector};
+use granular_core::{Dim, Linear, Motion, Vector};
 
 /// Grains with what they cover.
 pub(super) struct Frame<'a, D: Dim> {
@@ -54,6 +54,7 @@ impl<D: Dim> Frame<'_, D> {
             taken.force += force;
             taken.torque += D::cross(arm, force);
             sum.cells += share;
+            sum.arms += arm * share;
             sum.momentum += met * share;
             sum.angular_momentum += D::cross(arm, met * share);
         }
@@ -66,6 +67,8 @@ impl<D: Dim> Frame<'_, D> {
 pub(super) struct Taken<D: Dim> {
     load: Load<D>,
     cells: f64,
+    /// Of all covered cells, weighted with their shares.
+    arms: D::Vec,
     momentum: D::Vec,
     angular_momentum: D::Spin,
 }
@@ -80,10 +83,13 @@ pub(super) struct Units {
 impl<D: Dim> Taken<D> {
     /// In units, for a grain that covers `whole` cells wherever they are.
     pub(super) fn in_units(&self, units: &Units, whole: f64) -> (Load<D>, CoveredFluid<D>) {
-        let Self { load, cells, momentum, angular_momentum } = *self;
+        let Self { load, cells, arms, momentum, angular_momentum } = *self;
         let impulse = units.force * units.time_step;
         let load =
             Load { force: load.force * units.force, torque: load.torque * (units.force * units.spacing) };
+        // The centres of cells that a ball cuts do not have its centre as their mean; a uniform stream does not turn all the same.
+        let mean_arm = if cells > 0.0 { arms * (1.0 / cells) } else { D::Vec::ZERO };
+        let angular_momentum = angular_momentum - D::cross(mean_arm, momentum);
         let covered = CoveredFluid {
             share: if whole > 0.0 { cells / whole } else { 0.0 },
             momentum: momentum * impulse,
