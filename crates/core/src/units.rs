@@ -125,6 +125,7 @@ measured! {
     Density, DENSITY;
     Force, FORCE;
     Stiffness, STIFFNESS;
+    Damping, DAMPING;
     Pressure, PRESSURE;
     Energy, ENERGY;
     Power, POWER;

@@ -47,20 +47,23 @@ pub fn friction(scene: &Scene, plan: &Plan, told: Told<'_>) -> Result<MaterialFi
     }
 }
 
-/// What pairs state of contacts within one material becomes part of that material. Other pairs do
+/// What pairs state of contacts within one material becomes part of that material, all but constant dashpots. Other pairs do
 /// not matter where one material is alone; those of unknown ones stay, to be refused.
 fn with_own_contacts(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let materials = &mut scene.materials;
-    scene.pairs.retain(|pair| {
+    let pairs = std::mem::take(&mut scene.pairs).into_iter();
+    let kept = pairs.filter_map(|pair| {
         if let [one, other] = pair.between.as_slice()
             && one == other
             && let Some(material) = materials.get_mut(one)
         {
             *material = pair.applied_to(*material);
+            return pair.dashpots();
         }
-        pair.between.iter().any(|name| !materials.contains_key(name))
+        pair.between.iter().any(|name| !materials.contains_key(name)).then_some(pair)
     });
+    scene.pairs = kept.collect();
     scene
 }
 

@@ -52,6 +52,7 @@ dimensions! {
     DENSITY, [1, -3, 0, 0], "density", "kg/m^3", "2650 kg/m^3";
     FORCE, [1, 1, -2, 0], "force", "N", "1 N";
     STIFFNESS, [1, 0, -2, 0], "stiffness", "N/m", "1.6e6 N/m";
+    DAMPING, [1, 0, -1, 0], "damping coefficient", "N s/m", "0.2 N s/m";
     PRESSURE, [1, -1, -2, 0], "pressure", "Pa", "70 GPa";
     ENERGY, [1, 2, -2, 0], "energy", "J", "1 mJ";
     POWER, [1, 2, -3, 0], "power", "W", "1 W";

@@ -2,7 +2,7 @@
 
 use super::MaterialSpec;
 use crate::material::PairOverride;
-use granular_core::units::Stiffness;
+use granular_core::units::{Damping, Stiffness};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -26,6 +26,13 @@ pub struct PairSpec {
     /// Tangential over normal damping coefficient, 0 or more.
     #[serde(default)]
     pub damping_ratio: Option<f64>,
+    /// Damping of the normal dashpot, 0 or more, whatever the masses of the two bodies, for linear contacts: takes the place of
+    /// `restitution`.
+    #[serde(default)]
+    pub normal_damping: Option<Damping>,
+    /// Damping of the tangential dashpot, 0 or more, for linear contacts: takes the place of `damping_ratio`.
+    #[serde(default)]
+    pub tangential_damping: Option<Damping>,
     /// Coefficient of Coulomb friction, 0 or more.
     #[serde(default)]
     pub friction: Option<f64>,
@@ -45,14 +52,27 @@ impl PairSpec {
             stiffness_ratio: self.stiffness_ratio,
             restitution: self.restitution,
             damping_ratio: self.damping_ratio,
+            normal_damping: self.normal_damping.map(|damping| damping.value()),
+            tangential_damping: self.tangential_damping.map(|damping| damping.value()),
             friction: self.friction,
             rolling_friction: self.rolling_friction,
             twisting_friction: self.twisting_friction,
-            ..PairOverride::default()
         }
     }
 
-    /// A material whose contacts among its own bodies are those stated here.
+    /// The dashpots that are given as constants, which a material does not have; `None` without any.
+    pub fn dashpots(&self) -> Option<Self> {
+        let Self { normal_damping, tangential_damping, .. } = *self;
+        let between = self.between.clone();
+        (normal_damping.is_some() || tangential_damping.is_some()).then(|| Self {
+            between,
+            normal_damping,
+            tangential_damping,
+            ..Self::default()
+        })
+    }
+
+    /// A material whose contacts among its own bodies are those stated here, all but [`Self::dashpots`].
     pub fn applied_to(&self, material: MaterialSpec) -> MaterialSpec {
         MaterialSpec {
             normal_stiffness: self.normal_stiffness.or(material.normal_stiffness),

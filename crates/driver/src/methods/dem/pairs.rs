@@ -47,7 +47,18 @@ fn says_something(path: &str, spec: &PairSpec, contact: ContactSpec, problems: &
         let allowed = "at least one value beside `between`, such as friction";
         problems.add(path, "a pair without values", allowed, "leave it out: the materials are mixed then");
     }
+    let instead = [
+        ("restitution", spec.restitution, "normal_damping", spec.normal_damping),
+        ("damping_ratio", spec.damping_ratio, "tangential_damping", spec.tangential_damping),
+    ];
+    for (ratio, given, damping, constant) in instead {
+        if let (Some(given), Some(_)) = (given, constant) {
+            let allowed = format!("nothing, since {damping} is given");
+            problems.add(format!("{path}.{ratio}"), given, allowed, "give one of the two");
+        }
+    }
     if contact == ContactSpec::Hertz {
+        dashpots_are_of_linear_contacts(path, spec, problems);
         let hint =
             "the stiffness of Hertz contacts follows from young_modulus and poisson_ratio of the materials";
         let allowed = "nothing, since contacts are Hertz";
@@ -56,6 +67,16 @@ fn says_something(path: &str, spec: &PairSpec, contact: ContactSpec, problems: &
         }
         if let Some(given) = spec.stiffness_ratio {
             problems.add(format!("{path}.stiffness_ratio"), given, allowed, hint);
+        }
+    }
+}
+
+fn dashpots_are_of_linear_contacts(path: &str, spec: &PairSpec, problems: &mut Problems) {
+    let dashpots = [("normal_damping", spec.normal_damping), ("tangential_damping", spec.tangential_damping)];
+    for (key, given) in dashpots {
+        if let Some(given) = given {
+            let hint = "state `restitution` or `damping_ratio` instead";
+            problems.add(format!("{path}.{key}"), given, "nothing, since contacts are Hertz", hint);
         }
     }
 }
@@ -93,6 +114,16 @@ mod tests {
         let found = (pair.restitution, pair.normal_stiffness, pair.tangential_stiffness, pair.friction);
         assert_eq!(found, (0.4, 4e5, 4e5, 0.5));
         assert_eq!(materials.pair(1, 1).friction, 0.3);
+    }
+
+    #[test]
+    fn dashpots_may_be_constants() {
+        let given = r#"friction: 0.1, normal_damping: "2 N s/m", tangential_damping: 0.5,"#;
+        let text = SceneText::new("scene.ron", SCENE.replace("friction: 0.1,", given));
+        let (_, model) = check::read(&text).unwrap();
+        let solver: &dyn Any = model.simulation.solver();
+        let pair = solver.downcast_ref::<Dem2>().unwrap().materials().pair(0, 1);
+        assert_eq!((pair.normal_damping, pair.tangential_damping), (Some(2.0), Some(0.5)));
     }
 
     /// The scene with a part replaced; what is said of it.
@@ -135,6 +166,21 @@ mod tests {
                 "Dem(())",
                 "Dem((contact: Hertz))",
                 ["`pairs.1.normal_stiffness`", "since contacts are Hertz", "young_modulus"],
+            ),
+            (
+                "restitution: 0.4",
+                r#"restitution: 0.4, normal_damping: "2 N s/m""#,
+                ["`pairs.1.restitution` is 0.4", "nothing, since normal_damping is given", "one of the two"],
+            ),
+            (
+                "friction: 0.1,",
+                r#"normal_damping: "2 N/m","#,
+                ["`2 N/m` is a stiffness", "a damping coefficient such as `0.2 N s/m`", ""],
+            ),
+            (
+                "friction: 0.1,",
+                "tangential_damping: -1.0,",
+                ["`pairs.0.tangential_damping` is -1", "zero or more", ""],
             ),
             ("friction: 0.1,", "fricton: 0.1,", ["unknown key `fricton`", "did you mean `friction`?", ""]),
         ];
