@@ -66,7 +66,8 @@ impl<D: Dim> ResolvedGrains<D> {
     /// Finds what the fluid did to each grain in its step.
     fn take_loads(&mut self, fluid: &impl Provides<FlowLoad<D>>) -> Result<(), StepError> {
         let flow = fluid.view();
-        let around = Around { flow, dt: self.dt, gravity: self.options.gravity, held: self.options.held };
+        let gravity = self.options.gravity.unwrap_or(flow.gravity);
+        let around = Around { flow, dt: self.dt, gravity, held: self.options.held };
         for (k, grain) in self.known.grains.iter_mut().enumerate() {
             let at = self.first + k;
             grain.take(&flow.loads[at], &flow.covered[at], &around);

@@ -6,6 +6,7 @@ use crate::lbm::Lbm;
 use crate::moving::FASTEST;
 use crate::obstacle::Domain;
 use crate::real::Real;
+use crate::setup::Setup;
 use granular_core::quantity::{CoveredFluid, FlowLoad, FlowLoads, ImmersedGrain, ImmersedGrains, Load};
 use granular_core::{Accepts, Dim, Motion, Provides, Section, SnapshotError, Solver, StepError};
 
@@ -32,9 +33,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Accepts<ImmersedGrains<L::Dim>> for
 /// Grains are filled with fluid, which moves with them.
 impl<L: Lattice<Q>, const Q: usize, T: Real> Provides<FlowLoad<L::Dim>> for Lbm<L, Q, T> {
     fn view(&self) -> FlowLoads<'_, L::Dim> {
-        let (density, spacing) = (self.setup.density, self.setup.spacing);
+        let Setup { density, spacing, acceleration: gravity, .. } = self.setup;
         let Immersed { loads, covered, .. } = &self.immersed;
-        FlowLoads { loads, covered, density, inner_density: density, spacing }
+        FlowLoads { loads, covered, density, inner_density: density, gravity, spacing }
     }
 }
 

@@ -66,6 +66,8 @@ pub struct FlowLoads<'a, D: Dim> {
     /// Density \[kg/m^3\] of the fluid that fills grains and moves with them; zero where there is none. Loads then contain what
     /// it takes to accelerate it.
     pub inner_density: f64,
+    /// The part of the body force on the fluid that is a weight \[m/s^2\].
+    pub gravity: D::Vec,
     /// The smallest length that the fluid resolves \[m\], such as the edge of a cell.
     pub spacing: f64,
 }

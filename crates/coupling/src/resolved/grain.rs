@@ -102,7 +102,14 @@ mod tests {
         grain.radius = [2.0, 1.0];
         let covered = CoveredFluid::<D2> { share: 0.5, ..CoveredFluid::NONE };
         let around = |held| Around {
-            flow: FlowLoads { loads: &[], covered: &[], density: 3.0, inner_density: 3.0, spacing: 0.1 },
+            flow: FlowLoads {
+                loads: &[],
+                covered: &[],
+                density: 3.0,
+                inner_density: 3.0,
+                gravity: DVec2::ZERO,
+                spacing: 0.1,
+            },
             dt: 0.1,
             gravity: DVec2::new(0.0, -10.0),
             held,

@@ -8,9 +8,9 @@ pub(super) const COARSEST: f64 = 0.5;
 /// Choices for [`ResolvedGrains`](super::ResolvedGrains).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedOptions<D: Dim> {
-    /// What gives the fluid its weight \[m/s^2\], and grains their buoyancy: the gravity of the grains, as a rule. Whether the fluid itself has a body
-    /// force makes no difference; the part of that which stands for a gradient of pressure does not belong here.
-    pub gravity: D::Vec,
+    /// What gives the fluid its weight \[m/s^2\], and grains their buoyancy, where the fluid itself has none: its own pressure is then that above the one
+    /// at rest. `None` for the acceleration of the fluid, which may change.
+    pub gravity: Option<D::Vec>,
     /// Radius at which the fluid meets grains over their own, above 0 and at most 1: below 1 in the plane, where grains that touch would leave no way
     /// through. 0.7 to 0.95 in \[Kumar2014, section 6.2\]. Weights are those of the whole grain.
     pub radius_factor: f64,
@@ -20,19 +20,21 @@ pub struct ResolvedOptions<D: Dim> {
     pub held: HeldLoad,
 }
 
-impl<D: Dim> ResolvedOptions<D> {
-    /// The fluid meets grains at their own radius.
-    pub fn new(gravity: D::Vec) -> Self {
-        Self { gravity, radius_factor: 1.0, own_factors: Vec::new(), held: HeldLoad::default() }
+/// The fluid meets grains at their own radius, and gives them the buoyancy of its own weight.
+impl<D: Dim> Default for ResolvedOptions<D> {
+    fn default() -> Self {
+        Self { gravity: None, radius_factor: 1.0, own_factors: Vec::new(), held: HeldLoad::default() }
     }
+}
 
+impl<D: Dim> ResolvedOptions<D> {
     /// The factor of a grain.
     pub(super) fn factor(&self, id: u32) -> f64 {
         self.own_factors.get(id as usize).copied().unwrap_or(self.radius_factor)
     }
 
     pub(super) fn check(&self) -> Result<(), SetupError> {
-        if !self.gravity.is_finite() {
+        if self.gravity.is_some_and(|gravity| !gravity.is_finite()) {
             return Err(SetupError::new("gravity on the fluid", f64::NAN, "finite numbers"));
         }
         let mut factors = std::iter::once(&self.radius_factor).chain(&self.own_factors);

@@ -2,9 +2,9 @@
 
 use crate::tank::{Balls, Tank, unit_fluid};
 use granular_core::glam::{DVec2, DVec3};
-use granular_core::{D2, D3, Dim, FlowLoad, Linear, Provides};
-use granular_coupling::{HeldLoad, ResolvedOptions};
-use granular_lbm::{D2Q9, D3Q19, Face, Lattice};
+use granular_core::{D2, D3, Dim, FlowLoad, Linear, Provides, Simulation};
+use granular_coupling::{HeldLoad, ResolvedGrains, ResolvedOptions};
+use granular_lbm::{D2Q9, D3Q19, Face, Lattice, Lbm2};
 use std::f64::consts::TAU;
 
 type Plane = Tank<D2Q9, 9>;
@@ -54,7 +54,7 @@ fn momentum_of_fluid_and_free_disks_is_kept_to_round_off() {
         [(2.65, HeldLoad::OneStep, 1.0), (1.01, HeldLoad::OneStep, 0.9), (1.3, HeldLoad::TwoSteps, 1.0)]
     {
         let balls = Balls { friction: 0.5, ..Balls::<D2>::of(density, balls.clone()) };
-        let options = ResolvedOptions { held, radius_factor, ..ResolvedOptions::new(DVec2::ZERO) };
+        let options = ResolvedOptions { held, radius_factor, ..ResolvedOptions::default() };
         let flow = |p: DVec2| DVec2::new(0.02 + 0.02 * (p.y / 30.0 * TAU).sin(), 0.0);
         let mut tank = Plane::new(unit_fluid([40, 30, 1], 0.7), flow, &balls, options);
         let drift = drift_of_momentum(&mut tank, held, 120);
@@ -72,7 +72,7 @@ fn momentum_of_fluid_and_free_spheres_is_kept_to_round_off() {
         (DVec3::new(9.2, 9.5, 15.0), DVec3::new(-0.03, 0.01, 0.0), 3.8),
     ];
     let flow = |p: DVec3| DVec3::new(0.0, 0.02 * (p.x / 20.0 * TAU).sin(), 0.01);
-    let options = ResolvedOptions::new(DVec3::ZERO);
+    let options = ResolvedOptions::default();
     let balls = Balls::<D3>::of(1.2, balls);
     let mut tank = Tank::<D3Q19, 19>::new(unit_fluid([20, 18, 16], 0.7), flow, &balls, options);
     let drift = drift_of_momentum(&mut tank, HeldLoad::OneStep, 30);
@@ -87,7 +87,7 @@ fn a_free_disk_takes_the_speed_of_a_stream() {
     let release = |velocity: DVec2, steps: u64| {
         let balls = Balls::<D2>::of(1.5, vec![(DVec2::new(31.2, 25.5), velocity, 8.3)]);
         let mut tank =
-            Plane::new(unit_fluid([60, 50, 1], 1.0), |_| stream, &balls, ResolvedOptions::new(DVec2::ZERO));
+            Plane::new(unit_fluid([60, 50, 1], 1.0), |_| stream, &balls, ResolvedOptions::default());
         let mut largest = 0.0_f64;
         let first = {
             tank.advance(1);
@@ -128,7 +128,8 @@ fn a_disk_on_the_floor_has_its_submerged_weight() {
             (DVec2::new(20.3, 3.0 * radius), DVec2::ZERO, radius),
         ];
         let balls = Balls { gravity, floor: Some(0.0), ..Balls::<D2>::of(density, balls) };
-        let mut tank = Plane::new(setup, |_| DVec2::ZERO, &balls, ResolvedOptions::new(gravity));
+        let options = ResolvedOptions { gravity: (!has_weight).then_some(gravity), ..Default::default() };
+        let mut tank = Plane::new(setup, |_| DVec2::ZERO, &balls, options);
         tank.advance(6000);
         let weight = -gravity.y * D2::ball_volume(radius);
         for (id, load) in tank.grains().loads().iter().enumerate() {
@@ -160,8 +161,12 @@ fn grains_that_cross_a_periodic_face_move_as_others() {
             (DVec2::new(24.9, 15.2) + shift, DVec2::new(-0.03, 0.0), 3.6),
         ];
         let balls = Balls { gravity, friction: 0.4, ..Balls::<D2>::of(1.4, balls) };
-        let mut tank =
-            Plane::new(unit_fluid([40, 30, 1], 0.7), |_| DVec2::ZERO, &balls, ResolvedOptions::new(gravity));
+        let mut tank = Plane::new(
+            unit_fluid([40, 30, 1], 0.7),
+            |_| DVec2::ZERO,
+            &balls,
+            ResolvedOptions { gravity: Some(gravity), ..Default::default() },
+        );
         tank.advance(250);
         [0, 1].map(|id| {
             let grain = tank.grains().grain(id);
@@ -176,4 +181,27 @@ fn grains_that_cross_a_periodic_face_move_as_others() {
         }
     }
     assert!(whole[0].2.abs() > 1e-5, "they have touched");
+}
+
+#[test]
+fn choices_that_make_no_sense_and_grains_that_are_too_small_are_refused() {
+    let said = |options: ResolvedOptions<D2>, radius: f64| {
+        let mut simulation =
+            Simulation::named("water", Box::new(Lbm2::new(unit_fluid([20, 20, 1], 0.8)).unwrap()));
+        let water = simulation.find::<Lbm2>("water").unwrap();
+        let balls = Balls::<D2>::of(2.0, vec![(DVec2::splat(10.0), DVec2::ZERO, radius)]);
+        let grains = simulation.add("grains", balls.solver()).unwrap();
+        simulation.couple(water, grains, ResolvedGrains::new(options)).unwrap_err().to_string()
+    };
+    let with = |radius_factor: f64| ResolvedOptions { radius_factor, ..Default::default() };
+    for (options, radius, part) in [
+        (with(0.0), 4.0, "above 0 and at most 1"),
+        (with(1.1), 4.0, "hydrodynamic radius over that of the grain"),
+        (ResolvedOptions { own_factors: vec![f64::NAN], ..Default::default() }, 4.0, "above 0 and at most 1"),
+        (ResolvedOptions { gravity: Some(DVec2::NAN), ..Default::default() }, 4.0, "gravity on the fluid"),
+        (with(0.5), 3.0, "hydrodynamic radius of grain 0"),
+    ] {
+        let said = said(options, radius);
+        assert!(said.contains(part), "`{part}` is not in: {said}");
+    }
 }

@@ -29,7 +29,12 @@ fn a_disk_settles_at_the_speed_of_faxen() {
     let gravity = DVec2::new(0.0, -weight / ((density - 1.0) * volume));
     let balls = vec![(DVec2::new(30.0, 122.3), DVec2::ZERO, 0.5 * diameter)];
     let balls = Balls { gravity, ..Balls::<D2>::of(density, balls) };
-    let mut tank = Plane::new(setup, |_| DVec2::ZERO, &balls, ResolvedOptions::new(gravity));
+    let mut tank = Plane::new(
+        setup,
+        |_| DVec2::ZERO,
+        &balls,
+        ResolvedOptions { gravity: Some(gravity), ..Default::default() },
+    );
     tank.advance(9000);
     let before = tank.velocity(0);
     tank.advance(1000);
@@ -52,7 +57,7 @@ fn a_free_disk_turns_with_a_shear_flow() {
     let rate = 2.0 * wall / height;
     let balls = Balls::<D2>::of(1.01, vec![(DVec2::new(0.5 * length, 0.5 * height), DVec2::ZERO, radius)]);
     let flow = |p: DVec2| DVec2::new(rate * (p.y - 0.5 * height), 0.0);
-    let mut tank = Plane::new(setup, flow, &balls, ResolvedOptions::new(DVec2::ZERO));
+    let mut tank = Plane::new(setup, flow, &balls, ResolvedOptions::default());
     tank.advance(3000);
     let spin = tank.grains().grain(0).spin;
     println!("turns at {:.4} of half of the rate, drifts at {}", -2.0 * spin / rate, tank.velocity(0));
@@ -72,7 +77,7 @@ fn grains_as_light_as_the_fluid_are_stable() {
         let mut setup = unit_fluid::<D2>([48, 40, 1], tau);
         setup.faces[1] = [Face::REST, Face::REST];
         let balls = Balls::<D2>::of(density, vec![(DVec2::new(24.2, 20.3), DVec2::new(0.05, 0.01), radius)]);
-        let options = ResolvedOptions { held, ..ResolvedOptions::new(DVec2::ZERO) };
+        let options = ResolvedOptions { held, ..ResolvedOptions::default() };
         let mut tank = Plane::new(setup, |_| DVec2::ZERO, &balls, options);
         let mut speeds = Vec::new();
         for _ in 0..30 {
