@@ -1,9 +1,10 @@
 //! The same bits for any number of threads, any split, and after a restart, with obstacles that move.
 
+use crate::tank::{Balls, Tank, unit_fluid};
 use granular_core::glam::{DVec2, DVec3};
-use granular_core::{Section, Simulation, contract_tests};
-use granular_coupling::{Body, CarriedObstacles, Path, PrescribedMotion};
-use granular_lbm::{Ball, Face, Lbm2, Lbm3, Obstacle, Setup};
+use granular_core::{D2, D3, Section, Simulation, contract_tests};
+use granular_coupling::{Body, CarriedObstacles, HeldLoad, Path, PrescribedMotion, ResolvedOptions};
+use granular_lbm::{Ball, D2Q9, D3Q19, Face, Lbm2, Lbm3, Obstacle, Setup};
 
 fn bodies() -> PrescribedMotion<granular_core::D2> {
     let orbit = Path::Orbit { centre: DVec2::new(0.02, 0.03), rate: 0.4 };
@@ -51,6 +52,32 @@ fn sphere() -> Simulation {
     simulation
 }
 
+/// Free disks that fall to a floor, meet, and cross a periodic face.
+fn free_disks() -> Simulation {
+    let gravity = DVec2::new(0.0, -2e-4);
+    let mut setup = unit_fluid::<D2>([48, 40, 1], 0.7);
+    setup.faces[1] = [Face::REST, Face::REST];
+    setup.acceleration = gravity;
+    let balls = vec![
+        (DVec2::new(12.2, 6.0), DVec2::ZERO, 4.2),
+        (DVec2::new(14.0, 16.0), DVec2::new(-0.01, -0.03), 3.7),
+        (DVec2::new(46.5, 20.0), DVec2::new(0.03, 0.0), 5.1),
+    ];
+    let balls = Balls { gravity, friction: 0.5, floor: Some(0.0), ..Balls::<D2>::of(1.4, balls) };
+    let options = ResolvedOptions { held: HeldLoad::TwoSteps, radius_factor: 0.9, ..Default::default() };
+    Tank::<D2Q9, 9>::new(setup, |_| DVec2::ZERO, &balls, options).simulation
+}
+
+fn free_spheres() -> Simulation {
+    let balls = vec![
+        (DVec3::new(1.0, 9.0, 8.0), DVec3::new(0.02, 0.0, 0.03), 4.1),
+        (DVec3::new(9.2, 9.5, 8.0), DVec3::new(-0.03, 0.01, 0.0), 3.8),
+    ];
+    let balls = Balls { friction: 0.3, ..Balls::<D3>::of(1.2, balls) };
+    let fluid = unit_fluid([20, 18, 16], 0.8);
+    Tank::<D3Q19, 19>::new(fluid, |_| DVec3::ZERO, &balls, ResolvedOptions::default()).simulation
+}
+
 fn bytes(simulation: &Simulation) -> Vec<Vec<u8>> {
     let of = |section: Section| section.entries().flat_map(|(_, bytes)| bytes.to_vec()).collect();
     simulation.save().into_iter().map(of).collect()
@@ -93,4 +120,14 @@ fn same_bits_with_moving_disks() {
 #[test]
 fn same_bits_with_a_moving_sphere() {
     assert_same_bits(sphere);
+}
+
+#[test]
+fn same_bits_with_free_disks() {
+    assert_same_bits(free_disks);
+}
+
+#[test]
+fn same_bits_with_free_spheres() {
+    assert_same_bits(free_spheres);
 }
