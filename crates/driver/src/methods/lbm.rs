@@ -4,6 +4,7 @@ mod build;
 mod carried;
 mod member;
 mod read;
+mod resolved;
 
 use crate::methods::contract::{Building, Claims, Method};
 use crate::methods::member::Member;

@@ -18,6 +18,33 @@ pub enum CouplingSpec {
         #[serde(default = "one")]
         radius: f64,
     },
+    /// Grains and the fluid between them move each other: the fluid flows around each grain, which gets its force and torque, with
+    /// buoyancy.
+    Resolved {
+        /// Name of the solver of the grains.
+        grains: String,
+        /// Name of the solver of the fluid.
+        fluid: String,
+        /// Hydrodynamic radius over that of the grains, above 0 and at most 1, at which the fluid meets them; 1 by default. Disks
+        /// that touch leave no way through, as spheres would: 0.7 to 0.95 stand for the permeability of a bed of spheres. Weights and
+        /// buoyancy are those of whole grains.
+        #[serde(default = "one")]
+        radius: f64,
+        /// What grains feel during a step of the fluid.
+        #[serde(default)]
+        held: HeldLoadSpec,
+    },
+}
+
+/// The force of the fluid that grains feel during one of its steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename = "HeldLoad")]
+pub enum HeldLoadSpec {
+    /// That of its last step.
+    #[default]
+    OneStep,
+    /// The mean of its last two steps: what changes its sign from step to step is not felt.
+    TwoSteps,
 }
 
 fn one() -> f64 {
@@ -28,7 +55,9 @@ impl CouplingSpec {
     /// Solvers with long and with short steps.
     pub fn ends(&self) -> Ends<'_> {
         match self {
-            Self::Carried { grains, fluid, .. } => Ends { slow: ("fluid", fluid), fast: ("grains", grains) },
+            Self::Carried { grains, fluid, .. } | Self::Resolved { grains, fluid, .. } => {
+                Ends { slow: ("fluid", fluid), fast: ("grains", grains) }
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::carried::Carried;
 use super::member::{Action, Stages, Water};
 use super::read::{Fluid, Reader, components};
+use super::resolved;
 use crate::methods::contract::Building;
 use crate::methods::member::Member;
 use crate::problems::{Problems, quoted};
@@ -35,8 +36,8 @@ pub(super) fn build<L: Lattice<Q>, const Q: usize>(
     let carried = Carried::of(scene, name, &mut fluid.setup, simulation, problems)?;
     let water = (name, fluid, stages);
     match spec.precision {
-        PrecisionSpec::Double => add::<L, f64, Q>(water, carried, simulation, problems),
-        PrecisionSpec::Single => add::<L, f32, Q>(water, carried, simulation, problems),
+        PrecisionSpec::Double => add::<L, f64, Q>(scene, water, carried, simulation, problems),
+        PrecisionSpec::Single => add::<L, f32, Q>(scene, water, carried, simulation, problems),
     }
 }
 
@@ -94,6 +95,7 @@ fn actions<D: Dim>(scene: &Scene, problems: &mut Problems) -> Stages<D> {
 
 /// Adds the lattice, with the paths of obstacles that move coupled to it.
 fn add<L: Lattice<Q>, T: Real, const Q: usize>(
+    scene: &Scene,
     (name, fluid, stages): (&str, Fluid<L::Dim>, Stages<L::Dim>),
     carried: Vec<Carried<L::Dim>>,
     simulation: &mut Building,
@@ -123,6 +125,7 @@ fn add<L: Lattice<Q>, T: Real, const Q: usize>(
     for grains in carried {
         grains.couple(key, simulation, problems)?;
     }
+    resolved::couple(scene, name, key, simulation, problems)?;
     Some(Arc::new(Water { name: name.to_owned(), key, stages }))
 }
 

@@ -28,8 +28,8 @@ impl<D: Dim> Carried<D> {
     ) -> Option<Vec<Self>> {
         let mut list = Vec::new();
         for (k, law) in scene.couplings.iter().enumerate() {
-            let CouplingSpec::Carried { grains, radius, .. } = law;
-            if law.ends().slow.1 != fluid {
+            let CouplingSpec::Carried { grains, radius, fluid: name } = law else { continue };
+            if name != fluid {
                 continue;
             }
             let place = format!("couplings.{k}");
