@@ -206,11 +206,16 @@ impl Run<'_> {
                 let frames = frames(contacts, &[*time], units)?;
                 Ok((flow::chains(&walls, &frames.files, units)?.figure(), frames.left_out))
             }
-            FigureSpec::Map { fields, color, diverging, range, stage, times, .. } => {
+            FigureSpec::Map { fields, grains, color, diverging, range, stage, times, .. } => {
                 let units = Units { start: self.record(stage)?.start, time: 1.0, scaled: false };
+                let drawn = grains.as_ref().map(|grains| frames(grains, times, units)).transpose()?;
+                let grains = drawn.map_or_else(Vec::new, |drawn| drawn.files);
                 let frames = frames(fields, times, units)?;
+                if !grains.is_empty() && grains.len() != frames.files.len() {
+                    return Err(Failure::Io(format!("grains were not written at the times of `{fields}`")));
+                }
                 let (range, diverging) = (pair(range), *diverging);
-                let spec = map::MapSpec { files: &frames.files, color, diverging, range };
+                let spec = map::MapSpec { files: &frames.files, grains: &grains, color, diverging, range };
                 Ok((map::map(scene, units, &spec)?.figure(), frames.left_out))
             }
             _ => self.of_table(spec),

@@ -63,8 +63,8 @@ fn alone(text: &SceneText, scene: &Scene, group: &[&str]) -> SceneText {
     let elsewhere: Vec<(usize, &str)> = elsewhere.map(|(k, output)| (k, output.write.path())).collect();
     out.extend(elsewhere.iter().map(|(k, _)| format!("outputs.{k}")));
     for (k, figure) in scene.figures.iter().enumerate() {
-        let drawn = figure.needs("front").output;
-        if elsewhere.iter().any(|(_, path)| *path == drawn) {
+        let mut drawn = std::iter::once(figure.needs("front")).chain(figure.also_needs());
+        if drawn.any(|need| elsewhere.iter().any(|(_, path)| *path == need.output)) {
             out.push(format!("figures.{k}"));
         }
     }

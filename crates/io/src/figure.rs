@@ -30,7 +30,7 @@ mod svg;
 
 pub use chart::{Axis, Chart, Scale, Series, Style};
 pub use grains::{Chain, Grain, GrainFigure, GrainPanel, Mark, Patch};
-pub use map::{MapFigure, MapPanel};
+pub use map::{MapDisk, MapFigure, MapPanel};
 pub use panels::Panels;
 
 use crate::atomic::write_atomically;

@@ -62,5 +62,5 @@ fn seen(grid: &Grid) -> (usize, usize) {
 fn panel(label: String, grid: &Grid, values: &[f64]) -> Option<MapPanel> {
     let (normal, index) = seen(grid);
     let (values, cells) = grid.frame.plane(values, normal, index)?;
-    Some(MapPanel { label, cells, values, outlines: Vec::new() })
+    Some(MapPanel { label, cells, values, ..MapPanel::default() })
 }

@@ -5,10 +5,10 @@ use crate::failure::Failure;
 use crate::scene::fluid::{ObstacleSpec, ShapeSpec};
 use crate::scene::{Dimension, Scene};
 use granular_core::units::Length;
-use granular_io::figure::{MapFigure, MapPanel};
-use granular_io::vtk::{GridFields, read_vti};
+use granular_io::figure::{MapDisk, MapFigure, MapPanel};
+use granular_io::vtk::{GridFields, read_vti, read_vtp};
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Corners of the outline of a disk.
 const ROUND: usize = 72;
@@ -19,6 +19,8 @@ const FLAT: f64 = 3.0;
 /// What a map shows.
 pub(super) struct MapSpec<'a> {
     pub(super) files: &'a [PathBuf],
+    /// Grains to be drawn over each file; none, or as many.
+    pub(super) grains: &'a [PathBuf],
     pub(super) color: &'a str,
     pub(super) diverging: bool,
     pub(super) range: Option<[f64; 2]>,
@@ -28,9 +30,10 @@ pub(super) struct MapSpec<'a> {
 pub(super) fn map(scene: &Scene, units: Units, spec: &MapSpec<'_>) -> Result<MapFigure, Failure> {
     let mut panels = Vec::new();
     let mut grid = GridFields::default();
-    for file in spec.files {
+    for (k, file) in spec.files.iter().enumerate() {
         grid = read_vti(file)?;
-        panels.push(panel(scene, &grid, units, spec));
+        let disks = spec.grains.get(k).map(|file| disks(scene, &grid, file)).transpose()?;
+        panels.push(MapPanel { disks: disks.unwrap_or_default(), ..panel(scene, &grid, units, spec) });
     }
     let scale = if grid.spacing[0] * grid.cells[0] as f64 > 1.0 { 1.0 } else { 1e3 };
     let unit = if scale > 1.0 { "mm" } else { "m" };
@@ -42,6 +45,9 @@ pub(super) fn map(scene: &Scene, units: Units, spec: &MapSpec<'_>) -> Result<Map
     let corners = [0, 1].map(|end| [corner(0, end), corner(upward, end)]);
     for panel in &mut panels {
         panel.outlines.iter_mut().flatten().for_each(|point| *point = point.map(|x| scale * x));
+        for disk in &mut panel.disks {
+            *disk = MapDisk { center: disk.center.map(|x| scale * x), radius: scale * disk.radius };
+        }
     }
     let quantity = quantity(&grid, spec.color);
     let mut figure = MapFigure::new(title(scene, &spec.color.replace('_', " ")), quantity, corners, panels);
@@ -97,7 +103,20 @@ fn panel(scene: &Scene, grid: &GridFields, units: Units, spec: &MapSpec<'_>) -> 
     let obstacles = scene.fluid.iter().flat_map(|fluid| &fluid.obstacles);
     // Those that move show by their cells.
     let outlines = obstacles.filter(|obstacle| obstacle.path.is_none()).map(|body| outline(scene, body));
-    MapPanel { label, cells, values, outlines: outlines.collect() }
+    MapPanel { label, cells, values, outlines: outlines.collect(), ..MapPanel::default() }
+}
+
+/// Grains in the plane that is drawn; in space where the middle layer cuts them \[m\].
+fn disks(scene: &Scene, grid: &GridFields, file: &Path) -> Result<Vec<MapDisk>, Failure> {
+    let frame = read_vtp(file)?;
+    let upward = upward(scene);
+    let middle = grid.origin[1] + grid.spacing[1] * ((grid.cells[1] / 2) as f64 + 0.5);
+    let disk = |(place, radius): (&[f64; 3], f64)| {
+        let off = if upward == 2 { place[1] - middle } else { 0.0 };
+        // No radius where the layer is not met.
+        MapDisk { center: [place[0], place[upward]], radius: (radius * radius - off * off).max(0.0).sqrt() }
+    };
+    Ok(frame.points.iter().zip(frame.magnitude("radius").unwrap_or_default()).map(disk).collect())
 }
 
 /// The outline of an obstacle in the plane that is drawn \[m\].

@@ -8,6 +8,7 @@ use crate::methods::member::Member;
 use crate::observers::Line;
 use crate::observers::source::place_of;
 use crate::problems::{Problems, nearest, quoted};
+use crate::scene::names::Need;
 use crate::scene::{Chosen, Dimension, EverySpec, FigureSpec, Output, Scene, Writer};
 use files::{Files, Taken, check_path, spelled};
 use granular_core::{Location, ShownAs};
@@ -307,31 +308,11 @@ fn check_figures(
             problems.add(format!("figures.{k}"), "Cells in space", "Cells in the plane", hint);
         }
         let mut need = figure.needs(front);
-        let place = format!("figures.{k}.{}", need.key);
-        let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
-        let found = of_kind.clone().find(|output| output.write.path() == need.output);
-        if let Some(output) = found {
-            if let (FigureSpec::Energies { .. }, Some(member)) = (figure, member_of(output, model)) {
-                need.names = member.energies().to_vec();
-            }
-            let lacks = |name: &&str| !output.write.names().iter().any(|other| other == name);
-            let lacking: Vec<String> =
-                need.names.iter().copied().filter(lacks).map(|name| format!("\"{name}\"")).collect();
-            if !lacking.is_empty() && !unknown.contains(&need.output) {
-                let lacking = lacking.join(", ");
-                let value = format!("`{}`, which does not hold {lacking}", need.output);
-                let allowed = format!("a {} with {}", need.writer, need.names.join(", "));
-                problems.add(place, value, allowed, format!("add {lacking} to the output `{}`", need.output));
-            }
-        } else {
-            let known: Vec<&str> = of_kind.map(|output| output.write.path()).collect();
-            let hint = nearest(need.output, known.iter().copied());
-            let value = format!("`{}`, which no {} writes", need.output, need.writer);
-            let allowed = match known.as_slice() {
-                [] => format!("the path of a {}; add one to the outputs", need.writer),
-                _ => format!("the path of a {}: {}", need.writer, known.join(", ")),
-            };
-            problems.add(place, value, allowed, hint);
+        if let (FigureSpec::Energies { .. }, Some(member)) = (figure, drawn_of(scene, model, &need)) {
+            need.names = member.energies().to_vec();
+        }
+        for need in std::iter::once(&need).chain(figure.also_needs().as_ref()) {
+            check_need(scene, k, need, unknown, problems);
         }
         if let Some(stage) = need.stage.filter(|s| !scene.stages.iter().any(|other| other.name == *s)) {
             let known: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
@@ -340,5 +321,40 @@ fn check_figures(
             let allowed = format!("a stage of this scene: {}", known.join(", "));
             problems.add(format!("figures.{k}.stage"), value, allowed, hint);
         }
+    }
+}
+
+/// The solver whose output a figure draws.
+fn drawn_of<'a>(scene: &Scene, model: &'a Model, need: &Need<'_>) -> Option<&'a Arc<dyn Member>> {
+    let mut outputs = scene.outputs.iter();
+    let output =
+        outputs.find(|output| output.write.kind() == need.writer && output.write.path() == need.output);
+    output.and_then(|output| member_of(output, model))
+}
+
+/// Whether there is an output that holds what figure `k` needs.
+fn check_need(scene: &Scene, k: usize, need: &Need<'_>, unknown: &[&str], problems: &mut Problems) {
+    let place = format!("figures.{k}.{}", need.key);
+    let of_kind = scene.outputs.iter().filter(|output| output.write.kind() == need.writer);
+    let found = of_kind.clone().find(|output| output.write.path() == need.output);
+    if let Some(output) = found {
+        let lacks = |name: &&str| !output.write.names().iter().any(|other| other == name);
+        let lacking: Vec<String> =
+            need.names.iter().copied().filter(lacks).map(|name| format!("\"{name}\"")).collect();
+        if !lacking.is_empty() && !unknown.contains(&need.output) {
+            let lacking = lacking.join(", ");
+            let value = format!("`{}`, which does not hold {lacking}", need.output);
+            let allowed = format!("a {} with {}", need.writer, need.names.join(", "));
+            problems.add(place, value, allowed, format!("add {lacking} to the output `{}`", need.output));
+        }
+    } else {
+        let known: Vec<&str> = of_kind.map(|output| output.write.path()).collect();
+        let hint = nearest(need.output, known.iter().copied());
+        let value = format!("`{}`, which no {} writes", need.output, need.writer);
+        let allowed = match known.as_slice() {
+            [] => format!("the path of a {}; add one to the outputs", need.writer),
+            _ => format!("the path of a {}: {}", need.writer, known.join(", ")),
+        };
+        problems.add(place, value, allowed, hint);
     }
 }

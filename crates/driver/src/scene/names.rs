@@ -192,6 +192,14 @@ impl FigureSpec {
     }
 }
 
+impl FigureSpec {
+    /// What a figure needs of a second output.
+    pub(crate) fn also_needs(&self) -> Option<Need<'_>> {
+        let Self::Map { grains: Some(grains), .. } = self else { return None };
+        Some(Need { key: "grains", writer: "Fields", output: grains, names: vec!["radius"], stage: None })
+    }
+}
+
 /// The field of which a column of a profile is a component: `velocity` of `velocity_x`.
 fn field_of(column: &str) -> &str {
     ["_x", "_y", "_z"].iter().find_map(|end| column.strip_suffix(end)).unwrap_or(column)

@@ -281,6 +281,10 @@ pub enum FigureSpec {
         fields: String,
         /// Field that gives the colour: its value, or the length of a vector.
         color: String,
+        /// Path of a `Fields` output of grains with their `radius`, written as often, to draw them over the map; none by default. In space those that
+        /// the middle layer cuts.
+        #[serde(default)]
+        grains: Option<String>,
         /// Whether the colours are symmetric about zero, as for a vorticity.
         #[serde(default)]
         diverging: bool,

@@ -13,6 +13,8 @@ impl Colour {
     pub(super) const FINE_GRID: Self = Self([241; 3]);
     /// Grains and cells without a value.
     pub(super) const NEUTRAL: Self = Self([214; 3]);
+    /// Grains over a map: a sand that no colour of a map has.
+    pub(super) const GRAIN: Self = Self([222, 200, 150]);
 
     /// A colour of the palette of Okabe and Ito without its yellow, which is too pale for lines on
     /// white; black is the last of eight.

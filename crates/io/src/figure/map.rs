@@ -4,7 +4,7 @@ use super::Figure;
 use super::chart::Scale;
 use super::colour::Colour;
 use super::colour_bar::ColourBar;
-use super::drawing::{Area, Drawing, Stroke};
+use super::drawing::{Area, Drawing, Fill, Stroke};
 use super::geometry::clip_polyline;
 use super::image::{Image, Samples};
 use super::layout::{Layout, Request, are_usable};
@@ -22,6 +22,17 @@ pub struct MapPanel {
     pub values: Vec<f64>,
     /// Closed polygons drawn as lines, in the unit of the axes.
     pub outlines: Vec<Vec<[f64; 2]>>,
+    /// Grains, drawn over the cells.
+    pub disks: Vec<MapDisk>,
+}
+
+/// A grain over a map, in the unit of the axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapDisk {
+    /// Centre.
+    pub center: [f64; 2],
+    /// Radius; nothing is drawn where it is not above zero.
+    pub radius: f64,
 }
 
 /// Maps in a grid with the same scale, colours and axes.
@@ -121,6 +132,7 @@ impl MapFigure {
             if let Some(image) = panel.image([area.width(), area.height()], &paint) {
                 drawing.image(image, area);
             }
+            panel.draw_disks(&mut drawing, &layout, area);
             panel.draw_outlines(&mut drawing, &layout, area);
             drawing.rectangle(area, None, Some(Stroke::plain(Colour::FRAME, 0.8)));
             layout.draw_label(&mut drawing, index, &panel.label);
@@ -214,6 +226,19 @@ impl MapPanel {
             }
         }
         if valued < 0.5 * all { f64::NAN } else { sum / valued }
+    }
+
+    /// Disks whose centres are in the map.
+    fn draw_disks(&self, drawing: &mut Drawing, layout: &Layout, area: Area) {
+        let (x, y) = (layout.x(area), layout.y(area));
+        for disk in &self.disks {
+            let (center, radius) =
+                ([0, 1].map(|k| [&x, &y][k].place(disk.center[k])), disk.radius * layout.scale);
+            if radius > 0.0 && area.contains(center) {
+                let edge = (radius > 1.0).then_some(Stroke::plain(Colour::FRAME, (0.1 * radius).min(0.5)));
+                drawing.circle(center, radius, Fill::solid(Colour::GRAIN), edge);
+            }
+        }
     }
 
     fn draw_outlines(&self, drawing: &mut Drawing, layout: &Layout, area: Area) {

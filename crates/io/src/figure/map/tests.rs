@@ -180,8 +180,25 @@ proptest! {
         diverging: bool,
         width: f64,
     ) {
-        let panel = MapPanel { cells: [3, 4], values, outlines: vec![outline], label: "a".into() };
+        let panel = MapPanel { cells: [3, 4], values, outlines: vec![outline], label: "a".into(), disks: Vec::new() };
         let map = MapFigure { diverging, values: range, width, ..MapFigure::new("m", "q", corners, vec![panel]) };
         prop_assert!(is_sane(&map.figure()));
     }
+}
+
+#[test]
+fn disks_are_drawn_in_the_unit_of_the_axes_and_only_within_the_map() {
+    let disk = |center: [f64; 2], radius: f64| MapDisk { center, radius };
+    let disks = vec![
+        disk([5.0, 5.0], 2.0),
+        disk([12.0, 5.0], 1.0),
+        disk([2.0, 2.0], 0.0),
+        disk([f64::NAN, 1.0], 1.0),
+    ];
+    let panel = MapPanel { cells: [2, 2], values: vec![0.0; 4], disks, ..MapPanel::default() };
+    let map = MapFigure::new("", "speed", [[0.0, 0.0], [10.0, 10.0]], vec![panel]);
+    let svg = map.figure().svg();
+    assert_eq!(svg.matches("<circle").count(), 1);
+    let bare = MapFigure { panels: vec![MapPanel { disks: Vec::new(), ..map.panels[0].clone() }], ..map };
+    assert_eq!(bare.figure().svg().matches("<circle").count(), 0);
 }
