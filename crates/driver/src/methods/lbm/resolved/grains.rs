@@ -47,3 +47,64 @@ pub(crate) fn couple<L: Lattice<Q>, T: Real, const Q: usize>(
     }
     Some(())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::check;
+    use crate::scene_file::SceneText;
+    use granular_dem::Dem2;
+    use granular_lbm::Lbm2;
+
+    const SCENE: &str = r#"Scene(version: 1, dimension: Plane, gravity: [0.0, -9.81],
+        materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.4) },
+        sample: Grains([(position: ["5 mm", "8 mm"], radius: "1 mm", material: "glass")]),
+        fluid: (
+            size: ["10 mm", "12 mm"], viscosity: "1e-5 m^2/s", largest_speed: "0.2 m/s",
+            faces: (left: Wall, right: Wall, bottom: Wall, top: Wall),
+        ),
+        stages: [(name: "sink", end: For("20 ms"))],
+        solvers: { "grains": Dem(()), "water": Lbm((spacing: "0.2 mm")) },
+        couplings: [Resolved(grains: "grains", fluid: "water", radius: 0.9)])"#;
+
+    /// The speed of the grain after 20 ms, over that of a free fall.
+    fn share_of_free_fall(density: &str) -> f64 {
+        let text = SceneText::new("scene.ron", SCENE.replace("density: 2650", density));
+        let (_, mut model) = check::read(&text).unwrap();
+        let water = model.simulation.find::<Lbm2>("water").unwrap();
+        let dt = model.simulation.get(water).setup().time_step;
+        model.simulation.begin_segment(dt).unwrap();
+        let steps = (0.02 / dt).round();
+        model.simulation.advance(steps as u64).unwrap();
+        let grains = model.simulation.find::<Dem2>("grains").unwrap();
+        model.simulation.get(grains).grain(0).velocity.y / (-9.81 * steps * dt)
+    }
+
+    /// Buoyancy and the mass of the water that it takes along alone would leave (2.65 - 1)/(2.65 + 1).
+    #[test]
+    fn a_fluid_carries_and_brakes_a_grain() {
+        let heavy = share_of_free_fall("density: 2650");
+        assert!(heavy > 0.1 && heavy < 1.65 / 3.65, "{heavy}");
+        let light = share_of_free_fall("density: 900");
+        assert!(light < 0.0, "it rises: {light}");
+        let same = share_of_free_fall("density: 1000");
+        assert!(same.abs() < 1e-3, "it stays where it is: {same}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_told_at_its_place() {
+        let cases = [
+            ("radius: 0.9", "radius: 1.2", ["`couplings.0.radius` is 1.2", "above 0 and at most 1"]),
+            (r#"grains: "grains""#, r#"grains: "grain""#, ["`couplings.0.grains` is `grain`", "`grains`"]),
+            (r#""0.2 mm""#, r#""1 mm""#, ["hydrodynamic radius of grain 0", "couplings.0"]),
+            ("gravity:", "cell: (size: [\"10 mm\", \"12 mm\"]), gravity:", ["couplings.0", "`cell`"]),
+        ];
+        for (from, to, parts) in cases {
+            assert!(SCENE.contains(from));
+            let text = SceneText::new("scene.ron", SCENE.replace(from, to));
+            let said = check::read(&text).map(|_| ()).unwrap_err().to_string();
+            for part in parts {
+                assert!(said.contains(part), "`{part}` is not in:\n{said}");
+            }
+        }
+    }
+}
