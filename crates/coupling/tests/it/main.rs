@@ -8,6 +8,7 @@ mod forces;
 mod refusals;
 mod resolved;
 mod resolved_flows;
+mod resolved_open;
 mod tank;
 
 #[global_allocator]
