@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::{fs, io};
 
 /// Figures larger than this are taken as pixels, where both are there.
-const LARGEST_DRAWING: u64 = 400_000;
+const LARGEST_DRAWING: u64 = 150_000;
 /// Figures larger than this are left out.
 const LARGEST: u64 = 8_000_000;
 

@@ -60,7 +60,7 @@ function energySection(runs) {
       const [time, parts] = [columnOf(data, "time"), energiesOf(data)];
       if (!time || parts.length < 2) continue;
       const curves = energyCurves(time, parts);
-      const plot = new Plot({ x: { title: axisTitle("time", "s"), name: "time", unit: "s" }, y: { title: axisTitle("energy", "J"), unit: "J" }, height: 320 });
+      const plot = new Plot({ x: { title: axisTitle("time", "s"), name: "time", unit: "s" }, y: { title: axisTitle("energy", "J"), unit: "J" }, height: 320, marks: marksOf(run) });
       const several = runs.length > 1 || run.tables.length > 1;
       nodes.push(element("div", {}, several ? element("h3", {}, `${run.name}: ${data.name}`) : null, legend(curves), plot.node, energyTable(data, parts)));
       starts.push(() => plot.show(curves));

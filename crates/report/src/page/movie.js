@@ -84,20 +84,26 @@ class Movie {
   box() {
     if (this.plane) return this.plane.corners;
     const top = (channel) => channel.low + 65534 * channel.step;
-    const margin = this.radius ? top(this.radius) : 0;
-    return [this.places.map((place) => place.low - margin), this.places.map((place) => top(place) + margin)];
+    const around = (margin) => [this.places.map((place) => place.low - margin), this.places.map((place) => top(place) + margin)];
+    return around(this.radius ? top(this.radius) : radiusFor(around(0), this.counts[0]));
   }
 
   largestRadius() {
     return this.radius ? this.radius.low + 65534 * this.radius.step : this.guessedRadius();
   }
 
-  /** Radius to draw points with that have none: half of their distance, were they even. */
   guessedRadius() {
     const [low, high] = this.box();
-    const size = low.reduce((product, from, k) => product * Math.max(high[k] - from, 1e-300), 1);
-    return 0.5 * (size / Math.max(1, this.counts[0])) ** (1 / low.length);
+    return radiusFor([low, high], this.counts[0]) / 1.5;
   }
+}
+
+/** Radius to draw points with that have none: half of their distance, were they even in a box. */
+function radiusFor([low, high], count) {
+  const sizes = low.map((from, k) => high[k] - from);
+  const largest = Math.max(...sizes);
+  const volume = sizes.reduce((product, size) => product * Math.max(size, 1e-3 * largest), 1);
+  return 0.5 * (volume / Math.max(1, count)) ** (1 / low.length);
 }
 
 /** Which map and which ends colours have for values between two ends: about zero where they go to both sides. */

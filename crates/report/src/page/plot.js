@@ -5,8 +5,8 @@
  * A curve is { label, x, y, colour: index or text, dash: index, base: values below which it is filled or nothing }.
  */
 class Plot {
-  constructor({ x, y, height = 280, onzoom = () => {} }) {
-    Object.assign(this, { axes: { x, y }, height, onzoom, curves: [], zoom: null, cursor: null, drag: null });
+  constructor({ x, y, height = 280, marks = [], onzoom = () => {} }) {
+    Object.assign(this, { axes: { x, y }, height, marks, onzoom, curves: [], zoom: null, cursor: null, drag: null });
     this.canvas = element("canvas", { tabindex: "0", role: "img" });
     this.readout = element("div", { class: "readout", hidden: true });
     this.reset = element("button", { class: "reset", type: "button", hidden: true, onclick: () => this.zoomTo(null, true) }, "Show all");
@@ -137,6 +137,7 @@ class Plot {
     context.beginPath();
     context.rect(left, top, right - left, bottom - top);
     context.clip();
+    this.drawMarks(context);
     this.curves.forEach((curve) => this.drawCurve(context, curve));
     context.restore();
     this.drawDrag(context);
@@ -175,6 +176,25 @@ class Plot {
     context.fillText(this.axes.y.title, 0, 0);
     context.restore();
     context.font = `12px ${themed("--sans")}`;
+  }
+
+  /** Lines across, with names: where stages begin. */
+  drawMarks(context) {
+    const { top, bottom, to } = this.frame;
+    context.fillStyle = themed("--soft");
+    context.strokeStyle = themed("--soft");
+    context.textAlign = "left";
+    context.textBaseline = "top";
+    context.setLineDash([2, 4]);
+    for (const { at, name } of this.marks) {
+      const x = to.x(at);
+      context.beginPath();
+      context.moveTo(x, top);
+      context.lineTo(x, bottom);
+      context.stroke();
+      context.fillText(name, x + 4, top + 2);
+    }
+    context.setLineDash([]);
   }
 
   drawCurve(context, curve) {

@@ -44,7 +44,7 @@ void main() {
   if (there <= 0.0) discard;
   vec4 own = texture(map, vec2((colour * 255.0 + 0.5) / 256.0, 0.5));
   float sphere = 0.62 + 0.45 * sqrt(max(0.0, 1.0 - away)) + 0.16 * (at.y - 0.6 * at.x);
-  float shade = mix(mix(1.0, 0.72, smoothstep(0.6, 1.0, away)), sphere, lit);
+  float shade = mix(mix(1.0, 0.72, smoothstep(0.78, 1.0, away)), sphere, lit);
   shown = vec4(min(own.rgb * shade, 1.0) * there, there);
 }`;
 const POINT_NUMBERS = ["corner", "x", "y", "z", "radius", "share"];
@@ -158,56 +158,99 @@ class PointsOnGraphics {
   }
 }
 
-/** Draws points without a graphics processor: slower, and without light. */
+/** Draws points without a graphics processor: writes the pixels of their circles, the nearest last. */
 class PointsOnCanvas {
   constructor(canvas) {
-    this.context = canvas.getContext("2d");
+    Object.assign(this, { canvas, context: canvas.getContext("2d") });
   }
 
   clear() {
-    this.context.setTransform(1, 0, 0, 1, 0, 0);
-    this.context.clearRect(0, 0, this.context.canvas.width, this.context.canvas.height);
+    this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+  }
+
+  /** An image as large as the canvas, with nothing in it. */
+  fresh() {
+    const { width, height } = this.canvas;
+    if (!this.image || this.image.width !== width || this.image.height !== height) {
+      this.image = this.context.createImageData(width, height);
+      this.pixels = new Uint32Array(this.image.data.buffer);
+      this.depths = new Float32Array(width * height);
+    }
+    this.pixels.fill(0);
+    this.depths.fill(-Infinity);
   }
 
   draw(movie, frame, { colours, shares: own, camera }) {
-    const { context } = this;
-    const ratio = context.canvas.width / camera.width;
-    this.clear();
-    const places = projected(movie, frame, camera);
-    const order = Array.from(places.keys());
-    if (movie.inSpace) order.sort((a, b) => places[a][2] - places[b][2]);
-    for (const k of order) {
-      const [x, y, , size] = places[k];
-      const at = 4 * (own ? own[k] : 255);
-      context.fillStyle = `rgb(${colours[at]},${colours[at + 1]},${colours[at + 2]})`;
-      context.beginPath();
-      context.arc(x * ratio, y * ratio, Math.max(size * ratio, 0.7), 0, 7);
-      context.fill();
+    this.fresh();
+    const ratio = this.canvas.width / camera.width;
+    const palette = new Uint32Array(colours.buffer);
+    const { x, y, depth, size } = projected(movie, frame, camera);
+    for (let k = 0; k < x.length; k += 1) {
+      this.disk(x[k] * ratio, y[k] * ratio, Math.max(size[k] * ratio, 0.7), depth[k], palette[own ? own[k] : 255]);
+    }
+    this.context.putImageData(this.image, 0, 0);
+  }
+
+  /** Writes the pixels whose middles lie in a circle and that nothing nearer has. */
+  disk(x, y, radius, depth, colour) {
+    const { depths, pixels, image: { width, height } } = this;
+    const [first, last] = [Math.max(0, Math.ceil(y - radius - 0.5)), Math.min(height - 1, Math.floor(y + radius - 0.5))];
+    for (let row = first; row <= last; row += 1) {
+      const half = Math.sqrt(Math.max(0, radius * radius - (row + 0.5 - y) ** 2));
+      const end = row * width + Math.min(width - 1, Math.floor(x + half - 0.5));
+      for (let at = row * width + Math.max(0, Math.ceil(x - half - 0.5)); at <= end; at += 1) {
+        if (depths[at] > depth) continue;
+        depths[at] = depth;
+        pixels[at] = colour;
+      }
     }
   }
 }
 
-/** Pixels from the left and the top, depth, and radius in pixels of all points. */
+/** Pixels from the left and the top, depths, and radii in pixels of all points. */
 function projected(movie, frame, camera) {
+  const count = movie.counts[frame];
+  const [x, y, depth, size] = [0, 1, 2, 3].map(() => new Float32Array(count));
   const places = movie.places.map((place) => movie.decoded(place, frame));
   const radii = movie.radius ? movie.decoded(movie.radius, frame) : null;
   const guess = movie.radius ? 0 : movie.guessedRadius();
-  return Array.from({ length: movie.counts[frame] }, (_, k) => {
-    const [x, y, depth] = camera.project(places.map((axis) => axis[k]));
-    return [x, y, depth, (radii ? radii[k] : guess) * camera.scale];
+  // Along the screen a place changes what is seen by the same numbers everywhere: the camera has no perspective.
+  const zero = camera.project(places.map(() => 0));
+  const along = places.map((_, axis) => camera.project(places.map((__, other) => (axis === other ? 1 : 0))).map((end, k) => end - zero[k]));
+  x.fill(zero[0]);
+  y.fill(zero[1]);
+  depth.fill(zero[2]);
+  places.forEach((values, axis) => {
+    const [dx, dy, away] = along[axis];
+    for (let k = 0; k < count; k += 1) {
+      x[k] += dx * values[k];
+      y[k] += dy * values[k];
+      depth[k] += away * values[k];
+    }
   });
+  for (let k = 0; k < count; k += 1) size[k] = (radii ? radii[k] : guess) * camera.scale;
+  return { x, y, depth, size };
 }
 
-/** What draws points on a canvas, as good as the browser can. */
-function pointsOn(canvas) {
+/** More points than this are too many for a graphics processor that is only imitated. */
+const MOST_IMITATED = 20000;
+
+function isImitated(gl) {
+  const about = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(about ? about.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
+/** What draws up to so many points on a canvas, as good as the browser can. */
+function pointsOn(canvas, most) {
   try {
     const gl = canvas.getContext("webgl2", { antialias: false });
-    if (gl) return new PointsOnGraphics(canvas, gl);
+    if (gl && !(most > MOST_IMITATED && isImitated(gl))) return new PointsOnGraphics(canvas, gl);
   } catch (error) {
-    console.warn(`points are drawn without a graphics processor: ${error.message}`);
-    const other = canvas.cloneNode();
-    canvas.replaceWith(other);
-    return new PointsOnCanvas(other);
+    console.info(`points are drawn without a graphics processor: ${error.message}`);
   }
-  return new PointsOnCanvas(canvas);
+  // A canvas keeps the kind of drawing it was first asked for.
+  const other = canvas.cloneNode();
+  canvas.replaceWith(other);
+  return new PointsOnCanvas(other);
 }

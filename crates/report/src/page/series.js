@@ -24,6 +24,12 @@ function grouping(data) {
   return names.includes("id") ? { x: "time", by: "id" } : null;
 }
 
+/** Where the stages of a run begin, for axes of time. */
+function marksOf(run) {
+  const stages = run.facts.stages || [];
+  return stages.length > 1 ? stages.map((stage) => ({ at: stage.start, name: stage.name })) : [];
+}
+
 /** The tables of a name, one a run that has it. */
 class Tables {
   constructor(name, runs) {
@@ -129,6 +135,7 @@ class SeriesPanel {
     const plot = new Plot({
       x: { title: axisTitle(tables.x, xUnit), name: words(tables.x), unit: xUnit, log: this.log.x },
       y: { title, unit, log: this.log.y },
+      marks: tables.x === "time" && tables.parts.length === 1 ? marksOf(tables.parts[0].run) : [],
       onzoom: (ends) => this.plots.forEach((other) => other !== plot && other.zoomTo(ends && { x: ends }, false)),
     });
     this.plots.push(plot);

@@ -19,7 +19,7 @@ class Camera {
 
   /** Size of what is seen along both axes of the screen. */
   size() {
-    if (this.inSpace) return [this.depth, this.depth * 0.85];
+    if (this.inSpace) return [this.depth, this.depth * 0.7];
     return [0, 1].map((k) => Math.max(this.box[1][k] - this.box[0][k], 1e-300));
   }
 
@@ -117,7 +117,8 @@ class Viewer {
     this.note = element("p", { class: "note" });
     this.node = element("div", { class: "viewer" }, this.heading(), this.controls(), this.stage, this.bars, this.note);
     this.planeLayer = new PlaneLayer(this.canvases[0]);
-    this.pointsLayer = pointsOn(this.canvases[1]);
+    this.pointsLayer = pointsOn(this.canvases[1], Math.max(0, ...this.points.flatMap((movie) => movie.counts)));
+    this.canvases[1] = this.pointsLayer.canvas;
     this.overlay = this.canvases[2].getContext("2d");
     this.listen();
     this.choose();
@@ -253,9 +254,11 @@ class Viewer {
       return cell < 0 ? "" : tell(cell);
     }
     let [best, depth] = [-1, -Infinity];
-    projected(movie, frame, this.camera).forEach(([x, y, z, size], k) => {
-      if (Math.hypot(x - pixel[0], y - pixel[1]) <= Math.max(size, 2) && z >= depth) [best, depth] = [k, z];
-    });
+    const points = projected(movie, frame, this.camera);
+    for (let k = 0; k < points.x.length; k += 1) {
+      const isBelow = Math.hypot(points.x[k] - pixel[0], points.y[k] - pixel[1]) <= Math.max(points.size[k], 2);
+      if (isBelow && points.depth[k] >= depth) [best, depth] = [k, points.depth[k]];
+    }
     return best < 0 ? "" : tell(best);
   }
 
@@ -264,7 +267,8 @@ class Viewer {
     this.time = time;
     const width = this.node.clientWidth;
     const active = this.active();
-    if (!width || !active.length) return this.drawNothing();
+    if (!width) return undefined;
+    if (!active.length) return this.drawNothing();
     const [wide, tall] = this.camera.size();
     const height = Math.round(Math.max(220, Math.min(560, ((width - 68) * tall) / wide + 52)));
     this.stage.style.height = `${height}px`;
@@ -283,6 +287,8 @@ class Viewer {
     [this.planeLayer, this.pointsLayer].forEach((layer) => layer.clear());
     this.overlay.clearRect(0, 0, this.canvases[2].width, this.canvases[2].height);
     this.bars.replaceChildren();
+    this.barsKey = "";
+    return undefined;
   }
 
   drawLayer({ movie, choice }) {
