@@ -180,19 +180,21 @@ class Plot {
 
   /** Lines across, with names: where stages begin. */
   drawMarks(context) {
-    const { top, bottom, to } = this.frame;
+    const { top, bottom, right, to } = this.frame;
     context.fillStyle = themed("--soft");
     context.strokeStyle = themed("--soft");
     context.textAlign = "left";
     context.textBaseline = "top";
     context.setLineDash([2, 4]);
-    for (const { at, name } of this.marks) {
+    for (const [k, { at, name }] of this.marks.entries()) {
       const x = to.x(at);
+      const next = this.marks[k + 1] ? to.x(this.marks[k + 1].at) : right;
       context.beginPath();
       context.moveTo(x, top);
       context.lineTo(x, bottom);
       context.stroke();
-      context.fillText(name, x + 4, top + 2);
+      // A name that would lie on the next one is left out; the section of stages has it.
+      if (x + 8 + context.measureText(name).width < next) context.fillText(name, x + 4, top + 2);
     }
     context.setLineDash([]);
   }
