@@ -14,7 +14,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: hostile_run FOLDER")?);
     fs::create_dir_all(&folder)?;
     fs::write(folder.join("run.json"), FACTS.replace("HOSTILE", HOSTILE))?;
-    fs::write(folder.join("scene.ron"), format!("// {HOSTILE}\nScene(title: \"{HOSTILE}\", walls: [Floor(\"{HOSTILE}\")])"))?;
+    fs::write(
+        folder.join("scene.ron"),
+        format!("// {HOSTILE}\nScene(title: \"{HOSTILE}\", walls: [Floor(\"{HOSTILE}\")])"),
+    )?;
     fs::write(folder.join(format!("{NAME}.csv")), format!("time [s],{NAME} [<b>J</b>]\n0,1\n1,2\n2,0\n"))?;
     // A drawing with a script of its own.
     let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><script>parent.hostile = 4</script></svg>";
