@@ -111,6 +111,20 @@ pub fn limits_of(scene: &Scene, model: &Model) -> (Limits, Vec<f64>, Vec<String>
     (limits, steps, problems)
 }
 
+/// Limits and bounds beside what is taken of them by steps of stages \[s\], for scripts and `run.json`.
+pub(crate) fn limits_to_json(limits: &Limits, steps: &[f64]) -> Vec<Value> {
+    let chosen = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let steps = limits.steps.iter().map(|limit| {
+        json!({ "name": limit.name, "value": chosen, "bound": limit.dt, "unit": "s",
+            "binds": (chosen - limit.dt).abs() <= 1e-12 * limit.dt, "why": limit.why })
+    });
+    let bounds = limits.bounds.iter().map(|bound| {
+        json!({ "name": bound.name, "value": bound.value, "bound": bound.allowed, "unit": bound.unit,
+            "binds": !bound.holds(), "why": bound.why })
+    });
+    steps.chain(bounds).collect()
+}
+
 /// Where the scene chooses the step of a stage.
 fn key_of_step(scene: &Scene, model: &Model, stage: usize) -> String {
     if scene.stages[stage].time_step.is_some() {
@@ -318,16 +332,8 @@ impl Report {
 
     /// The report as JSON.
     pub fn to_json(&self) -> Value {
-        let chosen = self.stages.iter().map(|(_, dt, _)| *dt).fold(f64::INFINITY, f64::min);
-        let steps = self.limits.steps.iter().map(|limit| {
-            json!({ "name": limit.name, "value": chosen, "bound": limit.dt, "unit": "s",
-                "binds": (chosen - limit.dt).abs() <= 1e-12 * limit.dt, "why": limit.why })
-        });
+        let steps: Vec<f64> = self.stages.iter().map(|(_, dt, _)| *dt).collect();
         let pushes = self.pushes.iter().map(|(stage, text)| json!({ "stage": stage, "push": text }));
-        let bounds = self.limits.bounds.iter().map(|bound| {
-            json!({ "name": bound.name, "value": bound.value, "bound": bound.allowed, "unit": bound.unit,
-                "binds": !bound.holds(), "why": bound.why })
-        });
         let first = &self.solvers[0];
         let solvers = self.solvers.iter().map(|part| {
             json!({ "name": part.name, "solver": part.solver, "size": part.size.0, "memory_bytes": part.memory.bytes,
@@ -338,7 +344,7 @@ impl Report {
             "solver": first.solver,
             "size": first.size.0,
             "solvers": solvers.collect::<Vec<_>>(),
-            "limits": steps.chain(bounds).collect::<Vec<_>>(),
+            "limits": limits_to_json(&self.limits, &steps),
             "pushes": pushes.collect::<Vec<_>>(),
             "advice": self.limits.advice,
             "memory_bytes": self.solvers.iter().map(|part| part.memory.bytes).sum::<usize>(),

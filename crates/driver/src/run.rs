@@ -13,7 +13,7 @@ use crate::records::{RecordedStage, Seen};
 use crate::scene::{End, Scene};
 use crate::scene_file::SceneText;
 use granular_core::simulation::find_section;
-use granular_core::{Ending, Scheduled, Section, Simulation};
+use granular_core::{Ending, Limits, Scheduled, Section, Simulation};
 use granular_io::{SnapshotStore, hash_hex, simulation_hash};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -62,6 +62,8 @@ struct Session<'a> {
     outputs: Vec<Scheduled>,
     records: Vec<RecordedStage>,
     steps: Vec<f64>,
+    /// Limits at the start, as they stand in `run.json`.
+    limits: Vec<Value>,
     interrupt: &'a Interrupt,
     /// While steps are taken.
     stepping: Option<Stepping>,
@@ -102,7 +104,7 @@ fn run_one(
     interrupt: &Interrupt,
 ) -> Result<Value, Failure> {
     let (scene, model) = check::read_to_run(text)?;
-    let (_, steps, problems) = check::limits_of(&scene, &model);
+    let (limits, steps, problems) = check::limits_of(&scene, &model);
     if !problems.is_empty() {
         return Err(check::refusal(text.name(), &problems));
     }
@@ -110,7 +112,7 @@ fn run_one(
     // The folder holds all that the run needs.
     let files = scene.take_files(&mut text)?;
     let folder = RunFolder::create(out, text.text(), &files, force)?;
-    Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start()
+    Session::new(&scene, model, folder, (limits, steps), interrupt, quiet, true)?.start()
 }
 
 /// Takes the run in a folder up again from its newest snapshot.
@@ -143,18 +145,18 @@ fn resume_in(
     interrupt: &Interrupt,
 ) -> Result<Value, Failure> {
     let (scene, model) = check::read(text)?;
-    let (_, steps, _) = check::limits_of(&scene, &model);
+    let (limits, steps, _) = check::limits_of(&scene, &model);
     if !folder.has_snapshots() {
         if !quiet {
             progress::say(format_args!("no snapshot was taken yet: the run starts again"));
         }
-        return Session::new(&scene, model, folder, steps, interrupt, quiet, true)?.start();
+        return Session::new(&scene, model, folder, (limits, steps), interrupt, quiet, true)?.start();
     }
     let latest = folder.snapshots().latest()?;
     for warning in &latest.warnings {
         progress::say(format_args!("warning: {warning}; an older snapshot is used"));
     }
-    let mut session = Session::new(&scene, model, folder, steps, interrupt, quiet, false)?;
+    let mut session = Session::new(&scene, model, folder, (limits, steps), interrupt, quiet, false)?;
     let stage = session
         .restore(&latest.sections)
         .map_err(|failure| failure.with_context(format_args!("resuming from {}", latest.path.display())))?;
@@ -188,7 +190,7 @@ impl<'a> Session<'a> {
         scene: &'a Scene,
         model: Model,
         folder: RunFolder,
-        steps: Vec<f64>,
+        (limits, steps): (Limits, Vec<f64>),
         interrupt: &'a Interrupt,
         quiet: bool,
         fresh: bool,
@@ -208,6 +210,7 @@ impl<'a> Session<'a> {
             records: Vec::new(),
             model,
             folder,
+            limits: check::limits_to_json(&limits, &steps),
             steps,
             interrupt,
             stepping: None,
@@ -489,6 +492,10 @@ impl Session<'_> {
         let members = self.model.members.iter();
         let solvers =
             members.map(|member| (member.name().to_owned(), json!(member.solver(simulation).name())));
+        let sizes = self.model.members.iter().map(|member| {
+            let (count, item) = member.solver(simulation).size();
+            (member.name().to_owned(), json!({ "count": count, "item": item }))
+        });
         let facts = json!({
             "program": PROGRAM,
             "scene": self.folder.scene_path().display().to_string(),
@@ -500,11 +507,13 @@ impl Session<'_> {
             "simulated_seconds": clock.time(),
             "steps": clock.step(),
             "wall_seconds": wall,
+            "sizes": sizes.collect::<serde_json::Map<_, _>>(),
             "item": first.size().1,
             "rate": steps as f64 * first.size().0 as f64 / wall,
             "state_hash": hash_hex(simulation_hash(simulation)),
             "metrics": Value::Object(values.collect()),
             "units": Value::Object(units.collect()),
+            "limits": self.limits,
             "stages": self.records,
             "figures": self.figures.to_json(),
             "built": provenance(),

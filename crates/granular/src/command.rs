@@ -8,6 +8,7 @@ mod compare;
 #[cfg(feature = "mpm")]
 mod element;
 mod plot;
+mod report;
 mod summary;
 mod sweep;
 #[cfg(feature = "studies")]
@@ -101,6 +102,8 @@ enum Verb {
     Plot(plot::Plot),
     /// Compare runs: series, profiles and grids of run folders, and tables from elsewhere, in one figure and one table.
     Compare(compare::Compare),
+    /// Write one HTML file about runs, which any browser opens: summary, series, animation, energies, limits, scene.
+    Report(report::Report),
     /// Compare results with known answers; exit code 1 if a required one is missed.
     #[cfg(feature = "studies")]
     Validate(validate::Validate),
@@ -194,6 +197,7 @@ impl Verb {
             }
             Self::Plot(verb) => verb.execute(common),
             Self::Compare(verb) => verb.execute(common),
+            Self::Report(verb) => verb.execute(common),
             Self::Sweep(verb) => verb.execute(common),
             #[cfg(feature = "studies")]
             Self::Bench(verb) => verb.execute(common),

@@ -17,6 +17,7 @@ mod command_flow;
 mod command_interrupt;
 mod command_limits;
 mod command_push;
+mod command_report;
 mod command_sample;
 mod command_several;
 mod command_snapshots;

@@ -19,10 +19,11 @@ const ALLOWED: &[(&str, &str)] = &[
     ("granular-tessellate", "core"),
     ("granular-coupling", "core"),
     ("granular-io", "core"),
+    ("granular-report", "io"),
     ("granular-validation-data", ""),
     ("granular-driver", "core packing constitutive dem lbm mpm tessellate coupling io"),
     ("granular-studies", "core packing constitutive dem lbm mpm tessellate io driver validation-data"),
-    ("granular", "core driver studies"),
+    ("granular", "core driver report studies"),
 ];
 
 /// All other packages that come with one that is used alone, at any depth: `rayon` is more than one.

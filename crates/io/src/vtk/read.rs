@@ -16,6 +16,8 @@ pub struct Points {
     pub links: Vec<[u32; 2]>,
     /// Name, number of components, and values of each field of points or links.
     pub fields: Vec<(String, usize, Vec<f64>)>,
+    /// Name and unit of each field and number whose unit the file tells.
+    pub units: Vec<(String, String)>,
 }
 
 impl Points {
@@ -42,7 +44,7 @@ pub(super) fn magnitude(fields: &[(String, usize, Vec<f64>)], name: &str) -> Opt
 pub fn read_vtp(path: &Path) -> Result<Points, IoError> {
     let content = Content::read(path, "PolyData")?;
     let lines = content.element("Piece").and_then(|piece| piece.number::<usize>("NumberOfLines"));
-    let mut read = Points { time: content.time, ..Points::default() };
+    let mut read = Points { time: content.time, units: content.units(), ..Points::default() };
     let mut connectivity = Vec::new();
     for (name, components, values) in content.arrays {
         match name.as_str() {
@@ -101,6 +103,17 @@ impl Content {
             }
         }
         Ok(Self { elements, ..content })
+    }
+
+    /// Name and unit of each field and number: texts that end with a zero, as codes of their bytes.
+    pub(super) fn units(&self) -> Vec<(String, String)> {
+        let is_units = |element: &&Element| element.attribute("Name") == Some("units");
+        let Some(array) = self.elements.iter().find(is_units) else { return Vec::new() };
+        let bytes: Vec<u8> = array.text.split_whitespace().map_while(|code| code.parse().ok()).collect();
+        let texts = bytes.split(|byte| *byte == 0).filter_map(|text| std::str::from_utf8(text).ok());
+        // Names may hold what parts them from the unit, units do not.
+        let parted = texts.filter_map(|text| text.rsplit_once(": "));
+        parted.map(|(name, unit)| (name.to_owned(), unit.to_owned())).collect()
     }
 
     /// The first element of this name.
@@ -162,6 +175,8 @@ mod tests {
         assert_eq!(read.time, 0.125);
         assert_eq!(read.points, [[1.0, 2.0, 0.0], [-3.0, 1e-300, 0.0]]);
         assert_eq!(read.magnitude("velocity").unwrap(), [5.0, 0.0]);
+        let units = [("radius", "m"), ("velocity", "m/s")].map(|(a, b)| (a.to_owned(), b.to_owned()));
+        assert_eq!(read.units, units);
         assert!(read.links.is_empty());
         super::super::write_links_vtp(&path, &location, &frame, 1.0).unwrap();
         let read = read_vtp(&path).unwrap();

@@ -17,6 +17,8 @@ pub struct GridFields {
     pub cells: [usize; 3],
     /// Name, number of components, and values of each field, the cells along x fastest.
     pub fields: Vec<(String, usize, Vec<f64>)>,
+    /// Name and unit of each field and number whose unit the file tells.
+    pub units: Vec<(String, String)>,
 }
 
 impl GridFields {
@@ -84,7 +86,8 @@ pub fn read_vti(path: &Path) -> Result<GridFields, IoError> {
             return Err(fail(reason));
         }
     }
-    Ok(GridFields { time: content.time, origin, spacing, cells, fields: content.arrays })
+    let (time, units) = (content.time, content.units());
+    Ok(GridFields { time, origin, spacing, cells, fields: content.arrays, units })
 }
 
 #[cfg(test)]
