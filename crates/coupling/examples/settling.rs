@@ -51,12 +51,11 @@ fn disks(setup: &Setup<granular_core::D2>, side: usize, radius: f64) -> Result<D
     })?)
 }
 
+/// A simulation, its water and its disks.
+type Coupled = (Simulation, NodeKey<Lbm2>, NodeKey<Dem2>);
+
 /// Water and disks in one simulation.
-fn coupled(
-    cells: usize,
-    side: usize,
-    radius: f64,
-) -> Result<(Simulation, NodeKey<Lbm2>, NodeKey<Dem2>), Box<dyn Error>> {
+fn coupled(cells: usize, side: usize, radius: f64) -> Result<Coupled, Box<dyn Error>> {
     let setup = tank(cells);
     let (dt, disks) = (setup.time_step, disks(&setup, side, radius * SPACING)?);
     let mut simulation = Simulation::named("water", Box::new(Lbm2::new(setup)?));

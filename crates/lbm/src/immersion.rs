@@ -127,10 +127,9 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
         let positions = vectors("positions of grains in the fluid")?;
         let velocities = vectors("velocities of grains in the fluid")?;
         let spins: Vec<Turn<L, Q>> = from.array_of("spins of grains in the fluid", radii.len())?;
-        let loads: Vec<(Place<L, Q>, Turn<L, Q>)> =
-            from.array_of("loads on grains in the fluid", radii.len())?;
-        let covered: Vec<(f64, (Place<L, Q>, Turn<L, Q>))> =
-            from.array_of("fluid in the place of grains", radii.len())?;
+        type Pair<L, const Q: usize> = (Place<L, Q>, Turn<L, Q>);
+        let loads: Vec<Pair<L, Q>> = from.array_of("loads on grains in the fluid", radii.len())?;
+        let covered: Vec<(f64, Pair<L, Q>)> = from.array_of("fluid in the place of grains", radii.len())?;
         let covered: Vec<CoveredFluid<L::Dim>> = covered.into_iter().map(taken_up).collect();
         let motion = |k: usize| Motion::new(positions[k], velocities[k], spins[k]);
         let grains =
