@@ -183,15 +183,16 @@ impl<L: Lattice<Q>, const Q: usize, T: Real> Lbm<L, Q, T> {
 
     /// What a collision needs after so many steps.
     fn physics_at(&self, steps: u64) -> Physics {
-        let Setup { spacing, time_step, acceleration, body_force, .. } = &self.setup;
+        let Setup { spacing, time_step, body_force, .. } = &self.setup;
         let time = steps as f64 * time_step;
         let mut physics = self.physics;
-        let mut acceleration = *acceleration;
+        let mut acceleration = self.setup.acting_acceleration();
         if let Some(force) = body_force {
-            acceleration += force.uniform(time);
+            let varying = force.uniform(time).padded();
+            acceleration = std::array::from_fn(|axis| acceleration[axis] + varying[axis]);
             physics.field_factor = force.factor(time);
         }
-        physics.force = acceleration.padded().map(|a| a * time_step.powi(2) / spacing);
+        physics.force = acceleration.map(|a| a * time_step.powi(2) / spacing);
         physics
     }
 

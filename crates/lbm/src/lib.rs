@@ -106,7 +106,7 @@ pub use open::OpenScheme;
 pub use pages::Pages;
 pub use real::Real;
 pub use scales::FlowScales;
-pub use setup::{Face, Profile, Setup, SetupError};
+pub use setup::{Face, PressureLevel, Profile, Setup, SetupError};
 
 /// A fluid in the plane, per metre of depth.
 pub type Lbm2 = Lbm<D2Q9, 9>;

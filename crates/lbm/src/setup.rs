@@ -7,7 +7,7 @@ use crate::obstacle::Obstacle;
 use crate::obstacle::{Domain, cells_of};
 use crate::open::OpenScheme;
 use granular_core::shape::ShapeError;
-use granular_core::{Dim, Linear};
+use granular_core::{Dim, Linear, Vector as _};
 use std::collections::HashSet;
 use std::fmt;
 use std::sync::Arc;
@@ -27,8 +27,10 @@ pub struct Setup<D: Dim> {
     pub viscosity: f64,
     /// Density \[kg/m^3\].
     pub density: f64,
-    /// SolidShape force per mass \[m/s^2\]; its force density is that of the density given, not of the local one.
+    /// Body force per mass \[m/s^2\]; its force density is that of the density given, not of the local one.
     pub acceleration: D::Vec,
+    /// What pressure means where the acceleration is a weight; whole by default.
+    pub pressure: PressureLevel,
     /// A body force that varies in space or time, beside the acceleration; none by default.
     pub body_force: Option<BodyForce<D>>,
     /// Collision operator.
@@ -43,6 +45,19 @@ pub struct Setup<D: Dim> {
     pub gauges: Vec<Gauge<D>>,
     /// Largest speed that is expected \[m/s\], for the bound on the Mach number where it does not follow from faces and obstacles.
     pub expected_speed: f64,
+}
+
+/// What the pressure of a fluid under a constant acceleration means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PressureLevel {
+    /// It is whole and grows with depth, and density with it. A fluid that begins with the same pressure everywhere sinks into
+    /// itself at first and sloshes as sound.
+    #[default]
+    Whole,
+    /// It is that above the hydrostatic one. The acceleration acts along periodic axes only, as it would be balanced along
+    /// others by the part of the pressure that is left out; immersed grains learn of it whole, for their buoyancy, and obstacles
+    /// have none.
+    AboveHydrostatic,
 }
 
 /// One face of the domain.
@@ -210,6 +225,7 @@ impl<D: Dim> Setup<D> {
             viscosity,
             density: 1000.0,
             acceleration: D::Vec::ZERO,
+            pressure: PressureLevel::default(),
             body_force: None,
             operator: Operator::DEFAULT,
             smagorinsky: None,
@@ -228,6 +244,16 @@ impl<D: Dim> Setup<D> {
     /// One cell per step \[m/s\].
     pub fn lattice_speed(&self) -> f64 {
         self.spacing / self.time_step
+    }
+
+    /// The part of the acceleration that acts on cells \[m/s^2\].
+    pub(crate) fn acting_acceleration(&self) -> [f64; 3] {
+        let whole = self.acceleration.padded();
+        std::array::from_fn(|axis| {
+            let is_periodic = matches!(self.faces[axis][0], Face::Periodic);
+            let acts = is_periodic || self.pressure == PressureLevel::Whole;
+            if acts { whole[axis] } else { 0.0 }
+        })
     }
 
     pub(crate) fn check(&self) -> Result<(), SetupError> {

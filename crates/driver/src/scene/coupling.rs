@@ -19,7 +19,7 @@ pub enum CouplingSpec {
         radius: f64,
     },
     /// Grains and the fluid between them move each other: the fluid flows around each grain, which gets its force and torque, with
-    /// buoyancy.
+    /// buoyancy. The pressure of the fluid is then that above the hydrostatic one, in all directions that are not periodic.
     Resolved {
         /// Name of the solver of the grains.
         grains: String,

@@ -179,7 +179,7 @@ fn keys_are_told_from_other_words() {
 #[test]
 fn what_is_cited_is_in_the_references_and_the_other_way_round() {
     let mut cited: BTreeMap<String, String> = BTreeMap::new();
-    for (path, text) in sources() {
+    for (path, text) in files_below(&["crates", "validation"], "rs") {
         // A citation may break over two lines, so that a comment is read as a whole.
         let is_comment = |line: &&str| line.trim_start().starts_with("//");
         let comment: Vec<&str> = text
@@ -189,6 +189,11 @@ fn what_is_cited_is_in_the_references_and_the_other_way_round() {
             .collect();
         for key in keys(&comment.join(" ")) {
             cited.entry(key).or_insert_with(|| shown(&path));
+        }
+    }
+    for (path, text) in files_below(&["docs"], "md") {
+        if !path.ends_with("references.md") {
+            keys(&text).into_iter().for_each(|key| _ = cited.entry(key).or_insert_with(|| shown(&path)));
         }
     }
     let page =

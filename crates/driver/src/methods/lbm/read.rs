@@ -8,13 +8,14 @@ mod spacing;
 use crate::machine::room_for;
 use crate::problems::{Problems, quoted};
 use crate::scene::Scene;
+use crate::scene::coupling::CouplingSpec;
 use crate::scene::fluid::{FaceSpec, FacesSpec, FluidSpec, ProfileSpec, StartSpec};
 pub(super) use changes::components;
 use granular_core::units::{Measured, Unit, Velocity};
 use granular_core::{Dim, Linear, Vector};
 use granular_coupling::Body;
 use granular_lbm::spec::{LbmSpec, PrecisionSpec, StepSpec};
-use granular_lbm::{Face, Gauge, OpenScheme, Profile, Setup};
+use granular_lbm::{Face, Gauge, OpenScheme, PressureLevel, Profile, Setup};
 use std::sync::Arc;
 
 /// How far a size over the spacing may be off a whole number.
@@ -69,6 +70,7 @@ impl Reader<'_> {
         setup.origin = origin;
         setup.density = self.fluid.density.value();
         setup.acceleration = gravity?;
+        setup.pressure = self.pressure();
         setup.body_force = self.forces::<D>()?;
         setup.operator = self.spec.operator.into();
         setup.smagorinsky = self.spec.smagorinsky;
@@ -85,6 +87,15 @@ impl Reader<'_> {
         // Faces and obstacles as they are at the start count in any case; so do those that stages change.
         setup.expected_speed = setup.expected_speed.max(later);
         Some(Fluid { setup, start, bodies })
+    }
+
+    /// A fluid around grains has no weight of its own: it would first slosh as sound, and be denser below. Their buoyancy follows from
+    /// gravity all the same.
+    fn pressure(&self) -> PressureLevel {
+        let resolves =
+            |law: &CouplingSpec| matches!(law, CouplingSpec::Resolved { fluid, .. } if fluid == self.name);
+        let is_around_grains = self.scene.couplings.iter().any(resolves);
+        if is_around_grains { PressureLevel::AboveHydrostatic } else { PressureLevel::Whole }
     }
 
     fn check_positive(&mut self) {

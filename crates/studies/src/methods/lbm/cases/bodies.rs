@@ -80,7 +80,7 @@ impl Array {
 pub(crate) fn disk_in_channel(rows: &mut Rows, effort: Effort) -> Result<(), Failure> {
     let diameters: &[usize] = if effort == Effort::Full { &[10, 20] } else { &[10] };
     let drags = parallel::each(diameters, |&diameter| drag_in_channel(diameter))?;
-    // Faxen's series for a channel five diameters wide.
+    // Series of [Faxen1946] for a channel five diameters wide.
     let k = 5.0_f64;
     let series =
         k.ln() - 0.9157 + 1.7244 / k.powi(2) - 1.7302 / k.powi(4) + 2.4056 / k.powi(6) - 4.5913 / k.powi(8);
