@@ -6,6 +6,7 @@ use crate::grid::Grid;
 use crate::layout::Node;
 use crate::motion::{Plan, Strains, Stress, Watch, cut, put_stress, stress_at};
 use crate::particles::{Cut, Parts};
+use crate::step::vector_of;
 use granular_constitutive::{Axes, ConstitutiveLaw, Increment, Kept, Memory};
 use granular_core::snapshot::check_entry;
 use granular_core::{Dim, PerBlock, Section, SnapshotError, SymmetricTensor};
@@ -184,6 +185,9 @@ impl<D: Dim> BlockPass<'_, D> {
         let count = parts.position.items.len();
         for from in (0..count).step_by(BATCH) {
             let range = from..(from + BATCH).min(count);
+            if self.plan.velocity {
+                self.take_affine(tile, parts, range.clone());
+            }
             self.take(tile, parts, range.clone());
             let mass = &self.mass[range.clone()];
             (self.kernels.move_particles)(
@@ -207,6 +211,19 @@ impl<D: Dim> BlockPass<'_, D> {
             }
         }
         watch
+    }
+
+    /// Moments of the velocity after the step, if velocities are affine.
+    fn take_affine(&mut self, tile: &[Node], parts: &mut Parts<'_, D>, range: Range<usize>) {
+        let Some((_, take)) = self.kernels.affine else { return };
+        let width = self.width.get(range.clone()).unwrap_or(&[]);
+        let places = (&parts.position.items[range.clone()], width);
+        take(&mut self.batch, self.grid.tile_shape(), &self.corner, places, tile);
+        for (along, rows) in parts.affine.iter_mut().zip(&self.batch.rows[1..]).take(D::N) {
+            for (moment, row) in along.items[range.clone()].iter_mut().zip(rows) {
+                *moment = vector_of::<D>(row, 0);
+            }
+        }
     }
 
     fn take(&mut self, tile: &[Node], parts: &Parts<'_, D>, range: Range<usize>) {

@@ -7,8 +7,8 @@ use crate::body::{Body, LawBody};
 use crate::layout::{Node, TileShape};
 use crate::load::{Givers, load};
 use crate::motion::{Plan, Strains, Stress, Watch, move_particles, strain_particles};
-use crate::setup::{ObjectiveRate, Options, ShapeFunctions};
-use crate::shape::{Linear, QuadraticBspline, Shape, UniformGimp};
+use crate::setup::{ObjectiveRate, Options, ShapeFunctions, VelocityUpdate};
+use crate::shape::{Arms, Linear, QuadraticBspline, Shape, UniformGimp};
 use crate::turning::{ByRate, ByRotation, Gradients, Turning};
 use granular_constitutive::{
     AnyLaw, Bingham, ConstitutiveLaw, DruckerPrager, InPlane, InSpace, LinearElastic, LinearFriction,
@@ -17,7 +17,7 @@ use granular_constitutive::{
 use granular_core::{D2, D3, Dim};
 use std::any::{Any, TypeId};
 
-type Give<D> = fn(&mut Batch, &TileShape, &Corner<D>, (&[<D as Dim>::Vec], &[f64]), &mut [Node]);
+pub(crate) type Give<D> = fn(&mut Batch, &TileShape, &Corner<D>, (&[<D as Dim>::Vec], &[f64]), &mut [Node]);
 type Take<D> = fn(&mut Batch, &TileShape, &Corner<D>, (&[<D as Dim>::Vec], &[f64]), &[Node]);
 type Load<D> = fn(&mut [[Node; BATCH]; 4], &Givers<'_, D>, Option<f64>);
 type Move<D> = fn(&Plan, &[Node; BATCH], &mut [<D as Dim>::Vec], &mut [<D as Dim>::Vec], &[f64], &mut Watch);
@@ -33,6 +33,8 @@ pub(crate) struct Kernels<D: Dim> {
     pub(crate) give: Give<D>,
     /// From nodes to particles.
     pub(crate) take: Take<D>,
+    /// The same for vectors that act on the arms from particles to nodes; none unless velocities are affine.
+    pub(crate) affine: Option<(Give<D>, Take<D>)>,
     pub(crate) move_particles: Move<D>,
     pub(crate) strain_particles: Strain,
     /// Nodes that a particle reaches along an axis.
@@ -59,9 +61,15 @@ fn of_space(options: &Options) -> Kernels<D3> {
 fn of_shape<D: Dim, A: Gradients>(options: &Options) -> Kernels<D> {
     match options.shape {
         ShapeFunctions::Linear => of_rate::<D, A, Linear>(options),
-        ShapeFunctions::UniformGimp => of_rate::<D, A, UniformGimp>(options),
-        ShapeFunctions::QuadraticBspline => of_rate::<D, A, QuadraticBspline>(options),
+        ShapeFunctions::UniformGimp => with_affine::<D, A, UniformGimp>(options),
+        ShapeFunctions::QuadraticBspline => with_affine::<D, A, QuadraticBspline>(options),
     }
+}
+
+fn with_affine<D: Dim, A: Gradients, S: Shape>(options: &Options) -> Kernels<D> {
+    let is_affine = options.velocity_update == VelocityUpdate::Apic;
+    let kernels: (Give<D>, Take<D>) = (give::<D, Arms<S, true>>, take::<D, Arms<S, false>>);
+    Kernels { affine: is_affine.then_some(kernels), ..of_rate::<D, A, S>(options) }
 }
 
 fn of_rate<D: Dim, A: Gradients, S: Shape>(options: &Options) -> Kernels<D> {
@@ -76,6 +84,7 @@ fn of<D: Dim, A: Gradients, S: Shape, T: Turning>() -> Kernels<D> {
         load: load::<D>,
         give: give::<D, S>,
         take: take::<D, S>,
+        affine: None,
         move_particles: move_particles::<D>,
         strain_particles: strain_particles::<D, A, T>,
         reach: S::NODES,

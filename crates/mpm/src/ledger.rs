@@ -149,8 +149,17 @@ impl<D: Dim> Mpm<D> {
     /// Sum of angular momenta about the origin \[kg m^2/s\].
     pub fn angular_momentum(&self) -> D::Spin {
         let particles = &self.particles;
+        let cell = self.grid.lattice.cell;
+        // Affine velocities turn what is around a particle, too.
+        let turning = |k: usize| {
+            let moments = particles.affine.iter().enumerate().take(D::N);
+            let present = moments.filter_map(|(axis, along)| Some((axis, *along.get(k)?)));
+            present
+                .fold(D::Spin::ZERO, |sum, (axis, moment)| sum + D::cross(D::Vec::along(axis, cell), moment))
+        };
         (0..self.len()).fold(D::Spin::ZERO, |sum, k| {
-            sum + D::cross(particles.position[k], particles.velocity[k]) * particles.mass[k]
+            let orbital = D::cross(particles.position[k], particles.velocity[k]);
+            sum + (orbital + turning(k)) * particles.mass[k]
         })
     }
 

@@ -18,6 +18,8 @@ pub(crate) struct Givers<'a, D: Dim> {
     pub(crate) width: &'a [f64],
     /// Forces from outside; empty unless there are any.
     pub(crate) load: &'a [D::Vec],
+    /// Moments of the velocity along each axis; empty unless velocities are affine.
+    pub(crate) affine: [&'a [D::Vec]; 3],
 }
 
 impl<D: Dim> Givers<'_, D> {
@@ -32,6 +34,7 @@ impl<D: Dim> Givers<'_, D> {
             stress: self.stress.map(|component| component.get(from..to).unwrap_or(&[])),
             width: self.width.get(from..to).unwrap_or(&[]),
             load: self.load.get(from..to).unwrap_or(&[]),
+            affine: self.affine.map(|along| along.get(from..to).unwrap_or(&[])),
         }
     }
 }
@@ -78,6 +81,19 @@ pub(crate) fn load<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>
         rows[1][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xx[k], scale * xy[k], scale * xz[k], 0.0]);
         rows[2][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xy[k], scale * yy[k], scale * yz[k], 0.0]);
         rows[3][k] = Node([0.0, 0.0, 0.0, 0.0, scale * xz[k], scale * yz[k], scale * zz[k], 0.0]);
+    }
+}
+
+/// Lays out the momentum that moments of the velocity give, in proportion to the arms of nodes along each axis.
+pub(crate) fn load_affine<D: Dim>(rows: &mut [[Node; BATCH]; 4], givers: &Givers<'_, D>) {
+    rows[0].fill(Node::ZERO);
+    for (along, moments) in givers.affine.iter().enumerate().take(D::N) {
+        for ((row, moment), mass) in rows[1 + along].iter_mut().zip(*moments).zip(givers.mass) {
+            *row = Node::ZERO;
+            for axis in 0..D::N {
+                row.0[1 + axis] = mass * moment.component(axis);
+            }
+        }
     }
 }
 

@@ -16,6 +16,8 @@ pub(crate) struct Plan {
     pub(crate) velocity: bool,
     /// Share of the velocity that is that of the nodes.
     pub(crate) pic_share: f64,
+    /// Whether what particles give up is lost, rather than kept as affine motion.
+    pub(crate) books_pic: bool,
     /// Whether particles move, with the first vector that nodes hold.
     pub(crate) position: bool,
     /// Whether they strain, with the first (0) or the second (1) vector.
@@ -81,7 +83,7 @@ pub(crate) fn move_particles<D: Dim>(
                 // The force that draws a particle to the velocity of the nodes, times its mean velocity.
                 lost[k] = 0.5 * (own - velocity[k]).dot(own + velocity[k]);
             }
-            if plan.ledger {
+            if plan.ledger && plan.books_pic {
                 watch.lost[0] += lost.iter().zip(&mass[..count]).map(|(lost, mass)| lost * mass).sum::<f64>();
             }
         }

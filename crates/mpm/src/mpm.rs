@@ -127,7 +127,7 @@ impl<D: Dim> Mpm<D> {
         let first = self.particles.len() as u32;
         for particle in particles {
             let width = self.kernels.has_width.then(|| width_of::<D>(particle.volume, cell).min(1.0));
-            self.particles.push(particle, density, width);
+            self.particles.push(particle, density, width, self.kernels.affine.is_some());
             self.heaviest = self.heaviest.max(density * particle.volume);
             self.fastest = self.fastest.max(particle.velocity.length());
         }

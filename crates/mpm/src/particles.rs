@@ -16,6 +16,9 @@ pub(crate) const fn stress_components<D: Dim>() -> usize {
 /// Names of the components of the stress in snapshots.
 const STRESS: [&str; 6] = ["stress xx", "stress yy", "stress zz", "stress xy", "stress yz", "stress xz"];
 
+/// Names of moments of the velocity in snapshots.
+const AFFINE: [&str; 3] = ["velocity along x", "velocity along y", "velocity along z"];
+
 /// What is known of all particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Particles<D: Dim> {
@@ -29,6 +32,8 @@ pub(crate) struct Particles<D: Dim> {
     pub(crate) width: Vec<f64>,
     /// Forces from outside \[N\]; empty unless there are any.
     pub(crate) load: Vec<D::Vec>,
+    /// Mean over its nodes of the velocity times the way to them along each axis \[m/s cells\]; empty unless velocities are affine.
+    pub(crate) affine: [Vec<D::Vec>; 3],
     /// Stable identifiers.
     pub(crate) id: Vec<u32>,
 }
@@ -46,8 +51,8 @@ impl<D: Dim> Particles<D> {
         self.position.len()
     }
 
-    /// Adds one at the end, with its width if shape functions have one.
-    pub(crate) fn push(&mut self, particle: &Particle<D>, density: f64, width: Option<f64>) {
+    /// Adds one at the end, with its width if shape functions have one, and moments of its velocity if that is affine.
+    pub(crate) fn push(&mut self, particle: &Particle<D>, density: f64, width: Option<f64>, is_affine: bool) {
         self.position.push(particle.position);
         self.velocity.push(particle.velocity);
         self.mass.push(density * particle.volume);
@@ -60,6 +65,9 @@ impl<D: Dim> Particles<D> {
         self.width.extend(width);
         if !self.load.is_empty() {
             self.load.push(D::Vec::ZERO);
+        }
+        if is_affine {
+            self.affine.iter_mut().take(D::N).for_each(|along| along.push(D::Vec::ZERO));
         }
         self.id.push(self.id.len() as u32);
     }
@@ -83,6 +91,7 @@ impl<D: Dim> Particles<D> {
             stress: self.stress.each_ref().map(|component| &component[..]),
             width: &self.width,
             load: &self.load,
+            affine: self.affine.each_ref().map(|along| &along[..]),
         }
     }
 
@@ -112,6 +121,9 @@ impl<D: Dim> Particles<D> {
         }
         if !self.load.is_empty() {
             permute(&mut self.load, range.clone(), order, &mut spare.vectors);
+        }
+        for along in self.affine.iter_mut().filter(|along| !along.is_empty()) {
+            permute(along, range.clone(), order, &mut spare.vectors);
         }
         permute(&mut self.id, range, order, &mut spare.ids);
     }
@@ -148,6 +160,9 @@ impl<D: Dim> Particles<D> {
         if !self.load.is_empty() {
             to.put("load", &self.load);
         }
+        for (name, along) in AFFINE.iter().zip(&self.affine).filter(|(_, along)| !along.is_empty()) {
+            to.put(name, along);
+        }
         to.put("id", &self.id);
     }
 
@@ -173,6 +188,9 @@ impl<D: Dim> Particles<D> {
             self.width = numbers("width", positive)?;
         }
         self.load = if from.one::<u8>("is loaded")? == 0 { Vec::new() } else { vectors("load")? };
+        for (name, along) in AFFINE.iter().zip(&mut self.affine).filter(|(_, along)| !along.is_empty()) {
+            *along = vectors(name)?;
+        }
         self.id = from.array_of("id", count)?;
         let mut seen = vec![false; count];
         let fits = self
@@ -186,7 +204,8 @@ impl<D: Dim> Particles<D> {
     pub(crate) fn bytes_each(&self) -> usize {
         let width = if self.width.is_empty() { 0 } else { 8 };
         let load = if self.load.is_empty() { 0 } else { size_of::<D::Vec>() };
-        load + 2 * size_of::<D::Vec>() + 8 * (2 + stress_components::<D>()) + width + 4
+        let affine = self.affine.iter().filter(|along| !along.is_empty()).count() * size_of::<D::Vec>();
+        load + affine + 2 * size_of::<D::Vec>() + 8 * (2 + stress_components::<D>()) + width + 4
     }
 }
 
@@ -247,6 +266,7 @@ pub(crate) struct Changing<'a, D: Dim> {
     pub(crate) velocity: &'a mut [D::Vec],
     pub(crate) volume: &'a mut [f64],
     pub(crate) stress: [&'a mut [f64]; 6],
+    pub(crate) affine: [&'a mut [D::Vec]; 3],
 }
 
 /// The same, cut between blocks.
@@ -256,6 +276,7 @@ pub(crate) struct Parts<'a, D: Dim> {
     pub(crate) velocity: Cut<'a, D::Vec>,
     pub(crate) volume: Cut<'a, f64>,
     pub(crate) stress: [Cut<'a, f64>; 6],
+    pub(crate) affine: [Cut<'a, D::Vec>; 3],
 }
 
 impl<'a, D: Dim> Parts<'a, D> {
@@ -266,6 +287,7 @@ impl<'a, D: Dim> Parts<'a, D> {
             velocity: Cut::new(starts, changing.velocity),
             volume: Cut::new(starts, changing.volume),
             stress: changing.stress.map(|component| Cut::new(starts, component)),
+            affine: changing.affine.map(|along| Cut::new(starts, along)),
         }
     }
 }
@@ -276,13 +298,21 @@ impl<D: Dim> Divide for Parts<'_, D> {
         let (velocity, velocity_right) = self.velocity.divide(blocks, size);
         let (volume, volume_right) = self.volume.divide(blocks, size);
         let [a, b, c, d, e, f] = self.stress.map(|component| component.divide(blocks, size));
+        let [x, y, z] = self.affine.map(|along| along.divide(blocks, size));
         (
-            Self { position, velocity, volume, stress: [a.0, b.0, c.0, d.0, e.0, f.0] },
+            Self {
+                position,
+                velocity,
+                volume,
+                stress: [a.0, b.0, c.0, d.0, e.0, f.0],
+                affine: [x.0, y.0, z.0],
+            },
             Self {
                 position: position_right,
                 velocity: velocity_right,
                 volume: volume_right,
                 stress: [a.1, b.1, c.1, d.1, e.1, f.1],
+                affine: [x.1, y.1, z.1],
             },
         )
     }

@@ -102,6 +102,26 @@ impl Shape for QuadraticBspline {
     }
 }
 
+/// The same functions with values times the way from the particle to each node, in cells, in place of derivatives; over the sum of values
+/// times squares of these ways if `PER_MOMENT`. What is given by a vector with the latter and taken with the former is the same.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arms<S, const PER_MOMENT: bool>(std::marker::PhantomData<S>);
+
+impl<S: Shape, const PER_MOMENT: bool> Shape for Arms<S, PER_MOMENT> {
+    const NODES: usize = S::NODES;
+    const HAS_WIDTH: bool = S::HAS_WIDTH;
+
+    #[inline(always)]
+    fn shares(at: f64, width: f64, bounds: (f64, f64)) -> Shares {
+        let Shares { first, value, .. } = S::shares(at, width, bounds);
+        let way: [f64; REACH] = std::array::from_fn(|node| first + node as f64 - at);
+        let slope: [f64; REACH] = std::array::from_fn(|node| value[node] * way[node]);
+        let per_moment =
+            if PER_MOMENT { 1.0 / (slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2]) } else { 1.0 };
+        Shares { first, value, slope: slope.map(|slope| slope * per_moment) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,6 +154,22 @@ mod tests {
     #[test]
     fn values_and_slopes_are_complete_to_first_order() {
         check::<Linear>(1.0);
+        [0.05, 0.25, 0.5, 1.0].into_iter().for_each(check::<UniformGimp>);
+        check::<QuadraticBspline>(1.0);
+    }
+
+    #[test]
+    fn arms_have_no_mean_and_give_what_they_take() {
+        fn check<S: Shape>(width: f64) {
+            for step in 0..400 {
+                let at = 0.01 * f64::from(step) + 1e-3;
+                let given = Arms::<S, true>::shares(at, width, BOUNDS);
+                let taken = Arms::<S, false>::shares(at, width, BOUNDS);
+                assert!(taken.slope.iter().sum::<f64>().abs() < 1e-14);
+                let back: f64 = (0..3).map(|k| given.slope[k] * (given.first + k as f64 - at)).sum();
+                assert!((back - 1.0).abs() < 1e-13, "{at}: {back}");
+            }
+        }
         [0.05, 0.25, 0.5, 1.0].into_iter().for_each(check::<UniformGimp>);
         check::<QuadraticBspline>(1.0);
     }

@@ -87,6 +87,9 @@ pub enum VelocityUpdateSpec {
         /// Rate of the damping.
         pic_rate: Frequency,
     },
+    /// The velocity of the nodes and its moment, both given back (affine particle in cell): quiet, and angular momentum is kept. Not for the
+    /// shape `Linear`.
+    Apic,
 }
 
 impl Default for VelocityUpdateSpec {
@@ -142,7 +145,10 @@ pub struct BodyContactSpec {
 impl MpmSpec {
     /// The choices of the method; `ledger` when an output asks for losses of energy.
     pub fn options(&self, ledger: bool) -> Options {
-        let VelocityUpdateSpec::Flip { pic_rate } = self.velocity_update;
+        let velocity_update = match self.velocity_update {
+            VelocityUpdateSpec::Flip { pic_rate } => VelocityUpdate::Flip { pic_rate: pic_rate.value() },
+            VelocityUpdateSpec::Apic => VelocityUpdate::Apic,
+        };
         Options {
             shape: match self.shape {
                 ShapeSpec::Linear => ShapeFunctions::Linear,
@@ -154,7 +160,7 @@ impl MpmSpec {
                 SchemeSpec::StressFirst => Scheme::StressFirst,
                 SchemeSpec::ModifiedStressLast => Scheme::ModifiedStressLast,
             },
-            velocity_update: VelocityUpdate::Flip { pic_rate: pic_rate.value() },
+            velocity_update,
             objective_rate: match self.objective_rate {
                 ObjectiveRateSpec::HughesWinget => ObjectiveRate::HughesWinget,
                 ObjectiveRateSpec::Jaumann => ObjectiveRate::Jaumann,

@@ -2,9 +2,10 @@
 
 use crate::batch::{BATCH, Batch};
 use crate::body::Pass;
+use crate::choice::Give;
 use crate::grid::grow;
 use crate::layout::{LONGEST_TRAVEL, Node, block_cells};
-use crate::load::{Givers, load_outline};
+use crate::load::{Givers, load_affine, load_outline};
 use crate::motion::{Plan, Watch};
 use crate::mpm::Mpm;
 use crate::nodes::{Meeting, Touch};
@@ -43,7 +44,8 @@ impl<D: Dim> Mpm<D> {
         self.touches.find(&self.grid, &self.walls, &self.moving);
         let ledger = self.options.ledger;
         let pic_share = self.options.velocity_update.pic_share(dt);
-        let plan = Plan { dt, pic_share, ledger, ..Plan::default() };
+        let books_pic = self.kernels.affine.is_none();
+        let plan = Plan { dt, pic_share, books_pic, ledger, ..Plan::default() };
         let watch = match self.options.scheme {
             Scheme::StressLast => self.stress_last(&plan),
             Scheme::StressFirst => self.stress_first(&plan),
@@ -95,18 +97,20 @@ impl<D: Dim> Mpm<D> {
     pub(crate) fn fill_tiles(&mut self, field: usize, force: bool) {
         let per_cell = 1.0 / self.grid.lattice.cell;
         let (load, force) = (self.kernels.load, force.then_some(per_cell));
-        self.fill_tiles_with(field, |rows, givers| load(rows, givers, force));
+        let affine = self.kernels.affine.map(|(give, _)| give);
+        self.fill_tiles_with(field, affine, |rows, givers| load(rows, givers, force));
     }
 
     /// Particles of a field give to tiles where it ends.
     pub(crate) fn fill_tiles_with_outlines(&mut self, field: usize) {
         let frame = (self.grid.lattice.origin, 1.0 / self.grid.lattice.cell);
-        self.fill_tiles_with(field, |rows, givers| load_outline(rows, givers, frame));
+        self.fill_tiles_with(field, None, |rows, givers| load_outline(rows, givers, frame));
     }
 
     fn fill_tiles_with(
         &mut self,
         field: usize,
+        affine: Option<Give<D>>,
         load: impl Fn(&mut [[Node; BATCH]; 4], &Givers<'_, D>) + Sync,
     ) {
         let Self { grid, groups, particles, tiles, kernels, .. } = self;
@@ -129,6 +133,10 @@ impl<D: Dim> Mpm<D> {
                     load(&mut batch.rows, &givers);
                     let places = (givers.position, givers.width);
                     (kernels.give)(&mut batch, grid.tile_shape(), &corner, places, tile);
+                    if let Some(give_affine) = affine {
+                        load_affine(&mut batch.rows, &givers);
+                        give_affine(&mut batch, grid.tile_shape(), &corner, places, tile);
+                    }
                 }
             });
         }
@@ -188,6 +196,7 @@ impl<D: Dim> Mpm<D> {
                 velocity: &mut particles.velocity[range.clone()],
                 volume: &mut particles.volume[range.clone()],
                 stress,
+                affine: particles.affine.each_mut().map(|a| a.get_mut(range.clone()).unwrap_or(&mut [])),
             };
             group.body.pass(Pass {
                 plan,

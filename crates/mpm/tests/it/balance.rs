@@ -4,12 +4,20 @@ use crate::sample::{SCHEMES, SHAPES, alone, tumbling};
 use granular_constitutive::LinearElastic;
 use granular_core::glam::DVec2;
 use granular_core::{D2, D3, Dim, Linear, Solver, SymmetricTensor};
-use granular_mpm::{Mpm, Options, Particle, Setup};
+use granular_mpm::{Mpm, Options, Particle, Setup, VelocityUpdate};
 
 fn choices() -> impl Iterator<Item = Options> {
-    SHAPES.into_iter().flat_map(|shape| {
-        SCHEMES.into_iter().map(move |scheme| Options { shape, scheme, ..Options::default() })
-    })
+    let of = move |(shape, velocity_update)| {
+        SCHEMES.into_iter().map(move |scheme| Options {
+            shape,
+            scheme,
+            velocity_update,
+            ..Options::default()
+        })
+    };
+    let flip = SHAPES.into_iter().map(|shape| (shape, VelocityUpdate::default()));
+    let affine = SHAPES[1..].iter().map(|&shape| (shape, VelocityUpdate::Apic));
+    flip.chain(affine).flat_map(of)
 }
 
 fn keeps_momentum<D: Dim>(side: f64) {

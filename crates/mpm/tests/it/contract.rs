@@ -18,6 +18,10 @@ fn damped() -> Options {
     }
 }
 
+fn affine(options: Options) -> Options {
+    Options { velocity_update: VelocityUpdate::Apic, ..options }
+}
+
 const STEP: f64 = 1.25e-3;
 
 contract_tests!(
@@ -42,6 +46,18 @@ contract_tests!(
     splines_modified,
     || tumbling::<D2>(with(ShapeFunctions::QuadraticBspline, Scheme::ModifiedStressLast), 2.0),
     STEP,
+    warm_up = 1800
+);
+contract_tests!(
+    affine_splines,
+    || tumbling::<D2>(affine(with(ShapeFunctions::QuadraticBspline, Scheme::ModifiedStressLast)), 2.0),
+    STEP,
+    warm_up = 1800
+);
+contract_tests!(
+    affine_blocks_in_space,
+    || tumbling::<D3>(affine(with(ShapeFunctions::UniformGimp, Scheme::ModifiedStressLast)), 0.7),
+    0.5 * STEP,
     warm_up = 1800
 );
 contract_tests!(damped_among_walls, || falling::<D2>(damped(), 1.0), 0.5 * STEP);

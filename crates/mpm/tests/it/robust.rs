@@ -1,11 +1,11 @@
 //! Steps at the edge of stability, and particles that go far.
 
-use crate::sample::{SHAPES, alone, falling};
+use crate::sample::{SCHEMES, SHAPES, alone, falling};
 use granular_constitutive::LinearElastic;
 use granular_core::glam::DVec2;
 use granular_core::random::Chance;
 use granular_core::{D2, Solver, StepError};
-use granular_mpm::{Mpm2, Options, Particle, Scheme, Setup, ShapeFunctions};
+use granular_mpm::{Mpm2, Options, Particle, Scheme, Setup, ShapeFunctions, VelocityUpdate};
 
 /// Growth of the energy of a body that trembles at random, with steps of a multiple of the longest stable one.
 fn growth(options: Options, (share, side): (f64, f64), seed: u64) -> f64 {
@@ -27,12 +27,15 @@ fn growth(options: Options, (share, side): (f64, f64), seed: u64) -> f64 {
 #[test]
 fn steps_are_stable_up_to_the_limit_and_not_far_beyond() {
     alone(|| {
-        for shape in SHAPES {
-            for scheme in [Scheme::StressLast, Scheme::StressFirst, Scheme::ModifiedStressLast] {
-                let options = Options { shape, scheme, ..Options::default() };
+        let flip = SHAPES.map(|shape| (shape, VelocityUpdate::default()));
+        let affine = [SHAPES[1], SHAPES[2]].map(|shape| (shape, VelocityUpdate::Apic));
+        for (shape, velocity_update) in flip.into_iter().chain(affine) {
+            for scheme in SCHEMES {
+                let options = Options { shape, scheme, velocity_update, ..Options::default() };
                 let largest =
                     |share| (1..4).map(|seed| growth(options, (share, 6.0), seed)).fold(0.0, f64::max);
                 let (within, beyond) = (largest(0.98), largest(1.75));
+                println!("{options:?}: {within:.2} {beyond:.1e}");
                 assert!(within < 1.2 && beyond > 100.0, "{options:?}: {within} {beyond}");
             }
         }
@@ -52,6 +55,19 @@ fn energy_drifts_as_the_scheme_says() {
             assert!(last < 0.97 && first > 1.0 && first < 1.05, "{shape:?}: {last} {first}");
         }
     });
+}
+
+#[test]
+fn moments_of_velocities_take_memory_where_velocities_are_affine() {
+    let each = |velocity_update| {
+        let options = Options { velocity_update, ..Options::default() };
+        falling::<D2>(options, 1.0).memory()
+    };
+    let (flip, affine) = (each(VelocityUpdate::default()), each(VelocityUpdate::Apic));
+    assert_eq!(affine.bytes_per_item, flip.bytes_per_item + 2 * size_of::<DVec2>());
+    let says =
+        |memory: &granular_core::Memory| memory.left_out.iter().any(|what| what.contains("not affine"));
+    assert!(says(&flip) && !says(&affine));
 }
 
 #[test]
