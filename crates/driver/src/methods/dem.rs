@@ -3,6 +3,7 @@
 mod boundaries;
 mod build;
 mod cell;
+mod couplings;
 mod falling;
 mod grid;
 mod materials;

@@ -4,7 +4,7 @@ use super::falling::{self, Region};
 use super::grid::Grid;
 use super::sample_file::SavedSample;
 use super::stages::{self, Action};
-use super::{boundaries, probes, voronoi};
+use super::{boundaries, couplings, probes, voronoi};
 use crate::column::ColumnSize;
 use crate::failure::Failure;
 use crate::methods::contract::{Building, Claims};
@@ -93,6 +93,7 @@ impl<D: Dim> Member for Grains<D> {
         let dem = self.dem(simulation);
         let mut list = probes::shown(dem);
         list.extend(voronoi::shown(dem));
+        list.extend(couplings::shown(simulation, &self.name));
         list
     }
 
@@ -100,6 +101,7 @@ impl<D: Dim> Member for Grains<D> {
         let dem = self.dem(simulation);
         probes::show(dem, sink);
         voronoi::show(dem, free_surface, sink);
+        couplings::show(simulation, &self.name, sink);
     }
 
     fn shown_on_grids(&self, simulation: &Simulation) -> Vec<Shown> {

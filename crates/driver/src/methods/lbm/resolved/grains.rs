@@ -52,8 +52,10 @@ pub(crate) fn couple<L: Lattice<Q>, T: Real, const Q: usize>(
 mod tests {
     use crate::check;
     use crate::scene_file::SceneText;
+    use granular_core::{FieldRef, FieldSink};
     use granular_dem::Dem2;
     use granular_lbm::Lbm2;
+    use granular_tessellate::FREE_SURFACE;
 
     const SCENE: &str = r#"Scene(version: 1, dimension: Plane, gravity: [0.0, -9.81],
         materials: { "glass": (density: 2650, normal_stiffness: "1e5 N/m", restitution: 0.5, friction: 0.4) },
@@ -65,6 +67,38 @@ mod tests {
         stages: [(name: "sink", end: For("20 ms"))],
         solvers: { "grains": Dem(()), "water": Lbm((spacing: "0.2 mm")) },
         couplings: [Resolved(grains: "grains", fluid: "water", radius: 0.9)])"#;
+
+    /// Forces at grains, by the name of the field.
+    struct Forces(Vec<f64>);
+
+    impl FieldSink for Forces {
+        fn wants(&self, name: &str) -> bool {
+            name == "fluid_force"
+        }
+
+        fn number(&mut self, _: &str, _: &str, _: f64) {}
+
+        fn field(&mut self, name: &str, unit: &str, field: FieldRef<'_>) {
+            assert_eq!((name, unit), ("fluid_force", "N"));
+            let FieldRef::Vector2(forces) = field else { panic!("{field:?}") };
+            self.0.extend(forces.iter().map(|force| force.y));
+        }
+    }
+
+    #[test]
+    fn the_force_of_the_fluid_is_shown_at_grains() {
+        let text = SceneText::new("scene.ron", SCENE.replace("density: 2650", "density: 1000"));
+        let (_, mut model) = check::read(&text).unwrap();
+        let member = model.member(Some("grains")).clone();
+        assert!(member.shown(&model.simulation).iter().any(|shown| shown.name == "fluid_force"));
+        model.simulation.begin_segment(1e-5).unwrap();
+        model.simulation.advance(3).unwrap();
+        let mut forces = Forces(Vec::new());
+        member.show(&model.simulation, FREE_SURFACE, &mut forces);
+        // The weight of a disk as dense as the fluid.
+        let weight = 1000.0 * std::f64::consts::PI * 1e-6 * 9.81;
+        assert!((forces.0[0] / weight - 1.0).abs() < 1e-9, "{:?} of {weight}", forces.0);
+    }
 
     /// How far the grain has come after 20 ms, over the height of a free fall.
     fn share_of_free_fall(density: &str) -> f64 {
