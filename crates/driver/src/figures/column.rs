@@ -49,8 +49,8 @@ pub(super) fn runout(
                 "a = {aspect:.2}; final run-out {:.3}; running median of {MEDIAN} rows",
                 last(&run_out)
             ))
-            .note("front: farthest point of the largest set of grains that touch one another;")
-            .note("it falls back when grains at the edge part from that set")
+            .note("front: farthest point of the largest mass that hangs together;")
+            .note("it falls back when pieces at the edge part from it")
             .with(Series::new(label, run_out, Style::Line)),
         Chart::new("Height", Axis::linear(units.time_label()), Axis::linear(high))
             .note(format!("final height {:.3} {unit}", last(&height)))
