@@ -51,6 +51,7 @@ pub(crate) fn couple<L: Lattice<Q>, T: Real, const Q: usize>(
 #[cfg(test)]
 mod tests {
     use crate::check;
+    use crate::model::Model;
     use crate::scene_file::SceneText;
     use granular_core::{FieldRef, FieldSink};
     use granular_dem::Dem2;
@@ -68,7 +69,17 @@ mod tests {
         solvers: { "grains": Dem(()), "water": Lbm((spacing: "0.2 mm")) },
         couplings: [Resolved(grains: "grains", fluid: "water", radius: 0.9)])"#;
 
-    /// Forces at grains, by the name of the field.
+    /// A grain of this density in the water, and its step.
+    fn started(density: &str) -> (Model, f64) {
+        let text = SceneText::new("scene.ron", SCENE.replace("density: 2650", density));
+        let (_, mut model) = check::read(&text).unwrap();
+        let water = model.simulation.find::<Lbm2>("water").unwrap();
+        let dt = model.simulation.get(water).setup().time_step;
+        model.simulation.begin_segment(dt).unwrap();
+        (model, dt)
+    }
+
+    /// Forces at grains.
     struct Forces(Vec<f64>);
 
     impl FieldSink for Forces {
@@ -87,11 +98,9 @@ mod tests {
 
     #[test]
     fn the_force_of_the_fluid_is_shown_at_grains() {
-        let text = SceneText::new("scene.ron", SCENE.replace("density: 2650", "density: 1000"));
-        let (_, mut model) = check::read(&text).unwrap();
+        let (mut model, _) = started("density: 1000");
         let member = model.member(Some("grains")).clone();
         assert!(member.shown(&model.simulation).iter().any(|shown| shown.name == "fluid_force"));
-        model.simulation.begin_segment(1e-5).unwrap();
         model.simulation.advance(3).unwrap();
         let mut forces = Forces(Vec::new());
         member.show(&model.simulation, FREE_SURFACE, &mut forces);
@@ -102,11 +111,7 @@ mod tests {
 
     /// How far the grain has come after 20 ms, over the height of a free fall.
     fn share_of_free_fall(density: &str) -> f64 {
-        let text = SceneText::new("scene.ron", SCENE.replace("density: 2650", density));
-        let (_, mut model) = check::read(&text).unwrap();
-        let water = model.simulation.find::<Lbm2>("water").unwrap();
-        let dt = model.simulation.get(water).setup().time_step;
-        model.simulation.begin_segment(dt).unwrap();
+        let (mut model, dt) = started(density);
         let steps = (0.02 / dt).round();
         model.simulation.advance(steps as u64).unwrap();
         let grains = model.simulation.find::<Dem2>("grains").unwrap();
